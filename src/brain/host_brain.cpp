@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <optional>
 
 #include "brain/signed_power.hpp"
 #include "brain/ticks.hpp"
@@ -99,7 +101,8 @@ void HostBrain::read_sensors(std::uint32_t robot) {
 }
 
 void HostBrain::take_messages(std::uint32_t robot) {
-    while (received_count_ < most_received_) {
+    constexpr std::size_t most_bytes = std::numeric_limits<std::int32_t>::max();  // that offsets can say
+    while (received_count_ < most_received_ && used_bytes_ + kMostPayloadBytes <= most_bytes) {
         std::optional<Message> const message = receive(world_, robot);
         if (!message) {
             return;

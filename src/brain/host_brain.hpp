@@ -67,7 +67,8 @@ public:
     Outputs const& outputs() const { return outputs_; }
 
     /// Received messages since clear_received(), robot by robot and oldest first within each step. There is room for as
-    /// many as fit in all mailboxes of the category; then they wait in there, and are lost when these are full.
+    /// many as fit in all mailboxes of the category, up to 2 GiB; then they wait in there, and are lost when these are
+    /// full.
     std::span<Received const> received() const { return {received_.get(), received_count_}; }
     std::span<std::byte const> received_bytes() const { return {received_bytes_.get(), used_bytes_}; }
     void clear_received();

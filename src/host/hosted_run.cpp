@@ -119,7 +119,7 @@ std::int64_t pogosim_run::make_steps(std::int64_t steps, double budget_s) {
     using Clock = std::chrono::steady_clock;
     auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
     std::int64_t done = 0;
-    must_succeed(simulation_->attempt([&]() -> std::optional<UserFailure> {
+    Outcome const outcome = simulation_->attempt([&]() -> std::optional<UserFailure> {
         while (done < steps && !is_over() && (done == 0 || Clock::now() < deadline)) {
             if (auto failure = simulation_->step()) {
                 return failure;
@@ -128,7 +128,12 @@ std::int64_t pogosim_run::make_steps(std::int64_t steps, double budget_s) {
             in_use.yield();
         }
         return std::nullopt;
-    }));
+    });
+    if (outcome.failure && outcome.failure->code == ExitCode::done) {
+        conclude(outcome);  // the program has called exit(0)
+    } else {
+        must_succeed(outcome);
+    }
     return done;
 }
 

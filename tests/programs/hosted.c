@@ -35,6 +35,8 @@ static void fail(void) {
         }
     } else if (strcmp(failure, "exit") == 0) {
         exit(5);
+    } else if (strcmp(failure, "success") == 0) {
+        exit(0);
     } else if (strcmp(failure, "refuse") == 0) {
         refuse_parameter("failure", "something else");
     }

@@ -49,6 +49,21 @@ def test_robots_move_by_the_powers_of_the_array(tmp_path: Path) -> None:
         assert np.array_equal(sim.positions, before)
 
 
+def test_arrays_may_be_assigned(tmp_path: Path) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        brain = sim.brain("robots")
+        kept = brain.motors
+        brain.motors = np.array([[1, 2, 3], [4, 5, 6]])
+        brain.motors += 1
+        brain.leds = 9
+        brain.leds //= 2
+        assert brain.motors is kept
+        assert kept.tolist() == [[2, 3, 4], [5, 6, 7]]
+        assert (brain.leds == 4).all()
+        with pytest.raises(ValueError, match="could not broadcast"):
+            brain.motors = np.zeros((3, 3))
+
+
 def test_policy_of_arrays_drives_a_thousand_robots(tmp_path: Path) -> None:
     many = {**HOST, "objects.robots.nb": 1000, "arena_surface": 4e7, "simulation_time": 2}
     del many["objects.robots.poses"]

@@ -98,7 +98,8 @@ def test_models_of_a_package_are_found_by_whatever_simulates(packages: Path, tmp
     write_scene(tmp_path, {})
     for command in (["run", "./program"], ["batch", "run", "-c", "scene.yaml", "-S", "./program", "-R", "0"]):
         called(tmp_path, packages, *command)
-        assert (tmp_path / "path.txt").read_text() == f"{models}\n"
+        searched = f"{tmp_path}:{models}" if command[0] == "batch" else str(models)  # its configuration is elsewhere
+        assert (tmp_path / "path.txt").read_text() == f"{searched}\n"
         (tmp_path / "path.txt").unlink()
     program = example("helloworld").with_suffix(".so")
     (tmp_path / "inside.py").write_text(
@@ -196,6 +197,43 @@ def test_package_that_cannot_be_imported(group: str, place: str, code: str, reas
     entry = f"{KINDS[group]} 'thing' of the package lab 1.0 (pogosim.{group}: {place})"
     problem = f"{entry} cannot be imported: {reason}; update or uninstall the package"
     check_refused(tmp_path, group, "thing", problem)
+
+
+@pytest.mark.parametrize(
+    "points", ["np.zeros((0, 1))", "np.zeros(3)", "np.zeros((2, 2))", "np.full((2, 1), np.nan)", "None"]
+)
+def test_optimiser_that_asks_for_no_points(points: str, tmp_path: Path) -> None:
+    code = (
+        "import numpy as np\n"
+        "class Thing:\n"
+        "    def __init__(self, space, settings): pass\n"
+        "    def begin(self, answer): pass\n"
+        f"    def ask(self): return {points}\n"
+        "    def tell(self, answers): pass\n"
+    )
+    install(tmp_path, "lab", {"optimizers": "thing = lab:Thing"}, code)
+    write_scene(tmp_path, {"parameters.run_duration_min": {"optimization_domain": {"type": "int", "min": 1, "max": 9}}})
+    search = ["optimize", "-c", "scene.yaml", "-S", str(example("run_and_tumble")), "--optimizer", "thing"]
+    done = called(tmp_path, tmp_path, *search, "--max-evals", "5")
+    assert done.code == 2, done.text
+    problem = (
+        "optimizer 'thing': ask() must return points, numbers of shape (points, 1), each from 0 to 1; found an array"
+    )
+    assert problem in done.errors
+    assert "Traceback" not in done.text
+
+
+def test_analysis_whose_work_is_not_there(tmp_path: Path) -> None:
+    code = (
+        "from pogosim.reports.command_lines import Analysis, analysis_parser\n"
+        "thing = Analysis('x', lambda prog: analysis_parser(prog, 'x'), 'lab:nosuch')\n"
+    )
+    install(tmp_path, "lab", {"analyses": "thing = lab:thing"}, code)
+    (tmp_path / "a.feather").touch()
+    done = called(tmp_path, tmp_path, "analyze", "thing", "-i", "a.feather")
+    (line,) = done.errors.splitlines()
+    assert (done.code, done.output) == (2, "")
+    assert line.endswith("lab:nosuch cannot be imported: module 'lab' has no attribute 'nosuch'")
 
 
 @pytest.mark.parametrize("group", GROUPS)

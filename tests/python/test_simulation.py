@@ -195,6 +195,20 @@ def test_wrong_parameters_are_refused_and_change_nothing(
     assert sim.user_data["gain"].tolist() == [1.0] * 3
 
 
+def test_program_that_exits_with_success_ends_its_run(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    file = tmp_path / "rows.feather"
+    settings = {"parameters.fail_at_tick": 60, "parameters.failure": "success"}
+    with pogosim.Simulation(hosted, scene, set=settings, data_file=file) as sim:
+        done = sim.step(1000)
+        assert 90 < done < 110  # ticks of 16 ms, steps of 10 ms
+        assert sim.is_over
+        assert sim.step() == 0
+        rows, _ = load_dataframe(file)
+        assert rows["time"].unique().tolist() == [0.0, 0.5]
+        sim.reset()
+        assert sim.step(10) == 10
+
+
 @pytest.mark.parametrize(
     ("failure", "kind", "message"),
     [

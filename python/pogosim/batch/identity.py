@@ -15,7 +15,7 @@ from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.option_words import CHOICES
 from pogosim.batch.run_files import without_outputs
-from pogosim.yaml_1_2 import dump_yaml
+from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml
 
 # Keys that say, beside the names of outputs, where results go, not what they are.
 NOT_IN_THE_WORLD = (FORMAT, COLUMNS, "optimization", CHOICES)
@@ -88,6 +88,16 @@ def file_digest(path: Path) -> str:
         return ""
 
 
+def entries_in(path: Path) -> Any:
+    """Return what a file in YAML holds, such as a robot model; None: it is no such file."""
+    if path.suffix not in (".yaml", ".yml"):
+        return None
+    try:
+        return parse_yaml(path.read_text())
+    except (OSError, *WRONG_VALUES):
+        return None
+
+
 def texts_in(node: Any) -> Iterator[str]:
     """Yield all strings in a configuration."""
     if isinstance(node, dict):
@@ -101,7 +111,9 @@ def texts_in(node: Any) -> Iterator[str]:
 
 
 def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: dict[Path, str]) -> str:
-    """Return a digest of the configuration of a run, and of the files that it names (arenas, formations).
+    """Return a digest of the configuration of a run, and of the files that it names (arenas, robot models).
+
+    So are the files that those in YAML name, such as the script of a robot model.
 
     Args:
         entries: The configuration.
@@ -110,15 +122,26 @@ def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: di
     """
     world = {key: value for key, value in without_outputs(entries).items() if key not in NOT_IN_THE_WORLD}
     digest = hashlib.sha256(dump_yaml(world).encode(errors="surrogatepass"))
-    for text in texts_in(world):
-        if 0 < len(text) < 1024 and "\0" not in text:
-            for path in [folder / text for folder in folders]:
-                if path not in digests:
-                    digests[path] = file_digest(path)
-                if digests[path]:
-                    digest.update(digests[path].encode())
-                    break
+    for text in named_digests(world, folders, digests):
+        digest.update(text.encode())
     return digest.hexdigest()
+
+
+def named_digests(
+    node: Any, folders: tuple[Path, ...], digests: dict[Path, str], naming: tuple[Path, ...] = ()
+) -> Iterator[str]:
+    """Yield the digests of files that a configuration, or a file in YAML, names; `naming`: the files that led there."""
+    for text in texts_in(node):
+        if not 0 < len(text) < 1024 or "\0" in text:
+            continue
+        for path in [folder / text for folder in folders]:
+            if path not in digests:
+                digests[path] = file_digest(path)
+            if digests[path]:
+                yield digests[path]
+                if path not in naming:
+                    yield from named_digests(entries_in(path), (*folders, path.parent), digests, (*naming, path))
+                break
 
 
 def config_hash(entries: dict[str, Any]) -> str:

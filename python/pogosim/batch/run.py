@@ -39,6 +39,7 @@ LOG_LINES = 10
 WHEN = re.compile(r"^\[[^\]]*\] (?=\[)")  # the date of a line in the log
 MAX_WARNINGS = 1000  # of one run
 LONGEST_LINE = 10_000  # bytes of a line that are read at once
+IN_A_FILE = re.compile(r"Error: [^\s,]+:\d+: ")  # of a robot model, a script, an arena
 DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
 
 log = logging.getLogger("pogobatch")
@@ -64,13 +65,19 @@ class RunSettings:
     retry_new_seed: bool = False  # a run that failed is repeated with another seed
     says: tuple[str, ...] = QUIET
     working_folder: Path = field(default_factory=Path.cwd)
-    models_path: str = field(default_factory=lambda: models_path(log.warning))  # as POGOSIM_PATH of the simulator
+    models_path: str = field(default_factory=lambda: models_path(log.warning))  # folders, as in POGOSIM_PATH
 
     @property
     def folders(self) -> tuple[Path, ...]:
         """Folders in which files that a configuration names are searched, in this order."""
         models = map(Path, filter(None, self.models_path.split(os.pathsep)))
         return (self.working_folder, self.configuration_folder, *models)
+
+    @property
+    def search_path(self) -> str:
+        """POGOSIM_PATH of the simulator: where it finds what single runs find beside the configuration, and models."""
+        beside = str(self.configuration_folder)
+        return os.pathsep.join(filter(None, ["" if os.pathsep in beside else beside, self.models_path]))
 
 
 @dataclass(frozen=True)
@@ -154,7 +161,7 @@ class Simulators:
         self.watch.begin()
         self.slots = threading.BoundedSemaphore(at_once)
 
-    def run(self, command: Sequence[str], folder: Path, log: Path, models_path: str) -> tuple[int, float]:
+    def run(self, command: Sequence[str], folder: Path, log: Path, search_path: str) -> tuple[int, float]:
         """Run a program to its end.
 
         Returns:
@@ -166,10 +173,10 @@ class Simulators:
         """
         with self.slots:
             started_s = time.monotonic()
-            code = self.run_now(command, folder, log, models_path)
+            code = self.run_now(command, folder, log, search_path)
             return code, time.monotonic() - started_s
 
-    def run_now(self, command: Sequence[str], folder: Path, log: Path, models_path: str) -> int:
+    def run_now(self, command: Sequence[str], folder: Path, log: Path, search_path: str) -> int:
         """Do what `run` does, at once; returns the exit code."""
         if self.is_stopping:
             raise StoppedError
@@ -177,7 +184,7 @@ class Simulators:
             process = subprocess.Popen(
                 [*watch(), *command],
                 cwd=folder,
-                env=os.environ | {MODELS_VARIABLE: models_path} if models_path else None,
+                env=os.environ | {MODELS_VARIABLE: search_path} if search_path else None,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -329,14 +336,14 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     settings = task.settings
     arguments = ["-c", str(path), *settings.says, "--seed", str(task.seed_of(number))]
     command = [*starting(str(settings.program)), *arguments, *([] if settings.gui else ["-g"])]
-    code, simulator_s = simulators.run(command, settings.working_folder, folder / LOG, settings.models_path)
+    code, simulator_s = simulators.run(command, settings.working_folder, folder / LOG, settings.search_path)
     data = folder / FRAMES / task.data
     problem, is_fatal, is_certain = "", False, False
     file, log = None, ""
     if code != 0:
         log = tail(folder / LOG)
         problem = ending(code)
-        is_certain = code == REFUSED and f"Error: {OWN}:" in log
+        is_certain = code == REFUSED and (f"Error: {OWN}:" in log or IN_A_FILE.search(log) is not None)
         is_fatal = any(words in log for words in DISK_FULL)
         if is_fatal:
             problem = disk_full(settings.temporary)

@@ -80,13 +80,13 @@ class Search:
 
         Raises:
             BatchError: Runs cannot be done.
-            OptimizeError: The journal is that of another search.
+            OptimizeError: The journal is that of another search, or the optimiser asks for no points.
         """
         generation = 0
         while len(self.history) < self.settings.max_evals:
             generation += 1
             is_first = generation == 1
-            asked = self.optimizer.ask()
+            asked = self.asked()
             points = np.vstack([self.space.init, asked]) if is_first else asked
             evaluations = self.evaluated(generation, points[: self.settings.max_evals - len(self.history)])
             self.history += evaluations
@@ -96,6 +96,22 @@ class Search:
             self.optimizer.tell(answers)
             self.say(generation, evaluations)
             yield
+
+    def asked(self) -> Floats:
+        """Return the points of the next generation.
+
+        Raises:
+            OptimizeError: The optimiser, which may be of another package, asks for none, or for something else.
+        """
+        asked = self.optimizer.ask()
+        shape = np.shape(asked)
+        columns = len(self.space.init)
+        if len(shape) != 2 or shape[0] == 0 or shape[1] != columns or not np.all(np.isfinite(asked)):
+            raise OptimizeError(
+                f"optimizer '{self.settings.optimizer}': ask() must return points, numbers of shape (points, {columns}), "
+                f"each from 0 to 1; found an array of shape {shape}; update its package, or take another optimiser"
+            )
+        return asked
 
     def evaluated(self, generation: int, points: Floats) -> list[Evaluation]:
         """Return the evaluations of points, in their order."""

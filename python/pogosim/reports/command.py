@@ -69,7 +69,11 @@ def analyze(name: str, arguments: Sequence[str] | None, prog: str) -> int:
         return complain(prog, f"{error.filename}: {(error.strerror or str(error)).lower()}")
     from pogosim.reports.options import reported  # takes a while
 
-    return reported(prog, options, analysis.work)
+    try:
+        work = analysis.work
+    except ExtensionError as error:
+        return complain(prog, error)
+    return reported(prog, options, work)
 
 
 if __name__ == "__main__":

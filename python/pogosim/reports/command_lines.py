@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pogosim.command.parser import Parser, positive, whole
 from pogosim.defaults import MIN_SPEED_MM_S
-from pogosim.extensions import located
+from pogosim.extensions import ExtensionError, located, said
 
 NEIGHBOURS = "neighbors_list"  # the column that programs usually have
 
@@ -32,8 +32,17 @@ class Analysis:
 
     @property
     def work(self) -> Analyze:
-        """What writes tables and figures."""
-        found: Analyze = located(self.analyze) if isinstance(self.analyze, str) else self.analyze
+        """What writes tables and figures.
+
+        Raises:
+            ExtensionError: It cannot be imported.
+        """
+        if not isinstance(self.analyze, str):
+            return self.analyze
+        try:
+            found: Analyze = located(self.analyze)
+        except (ImportError, AttributeError) as error:
+            raise ExtensionError(f"{self.analyze} cannot be imported: {said(error)}") from None
         return found
 
 

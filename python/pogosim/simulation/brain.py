@@ -23,6 +23,8 @@ class Brain:
     `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
     tick, 60 times per second of its own clock, and its sensors are those of its last tick.
 
+    Arrays may be assigned, which copies values into them: `brain.motors = powers`, `brain.leds //= 2`.
+
     Powers are integers from -1023 to 1023. NumPy cuts off fractions without a word, so a power of 0.8 becomes 0: scale
     what is from -1 to 1, as in `brain.motors[:, :2] = np.rint(1023 * policy)`.
 
@@ -60,25 +62,45 @@ class Brain:
         """Powers, -1023 to 1023, positive is forward. Shape (robots, 3): right, left, back; to be written."""
         return self._writable("motors")
 
+    @motors.setter
+    def motors(self, values: npt.ArrayLike) -> None:
+        self.motors[...] = values
+
     @property
     def leds(self) -> npt.NDArray[np.uint8]:
         """Colours of the LEDs, to be written. Shape (robots, 5, 3): head, front, right, back, left; channels."""
         return self._writable("leds")
+
+    @leds.setter
+    def leds(self, values: npt.ArrayLike) -> None:
+        self.leds[...] = values
 
     @property
     def send_bytes(self) -> npt.NDArray[np.uint8]:
         """Messages to send, in the first `send_length` bytes. Shape (robots, 382); to be written."""
         return self._writable("send_bytes")
 
+    @send_bytes.setter
+    def send_bytes(self, values: npt.ArrayLike) -> None:
+        self.send_bytes[...] = values
+
     @property
     def send_length(self) -> npt.NDArray[np.int32]:
         """Bytes to send, 0 to 382, -1: none; set back to -1 when they are sent. Shape (robots,); to be written."""
         return self._writable("send_length")
 
+    @send_length.setter
+    def send_length(self, values: npt.ArrayLike) -> None:
+        self.send_length[...] = values
+
     @property
     def send_face(self) -> npt.NDArray[np.int8]:
         """Where to: 0 front, 1 right, 2 back, 3 left, -1 in all directions. Shape (robots,); to be written."""
         return self._writable("send_face")
+
+    @send_face.setter
+    def send_face(self, values: npt.ArrayLike) -> None:
+        self.send_face[...] = values
 
     @property
     def photosensors(self) -> npt.NDArray[np.int16]:
@@ -130,7 +152,7 @@ class Brain:
         Raises:
             ConfigurationError: It is too long or not of bytes, or there is no such robot or face.
         """
-        row = given.integer("robot", robot, least=0, most=max(len(self) - 1, 0))
+        row = given.integer("robot", robot, least=0, most=len(self) - 1)
         to = given.integer("face", face, least=-1, most=3)
         if not isinstance(message, (bytes, bytearray)):
             raise given.refused("message", 'bytes, such as b"x"', message)
