@@ -75,7 +75,7 @@ TEST(Mailbox, GivesMessagesBackFirstInFirstOut) {
         ASSERT_TRUE(message);
         EXPECT_EQ(message->header.payload_length, length);
         ASSERT_EQ(message->payload.size(), length);
-        EXPECT_TRUE(std::ranges::all_of(message->payload, [&](std::byte b) { return b == std::byte(value); }));
+        EXPECT_TRUE(std::ranges::equal(message->payload, payload_of(length, value)));
     }
     EXPECT_FALSE(boxes.take(0));
 }
