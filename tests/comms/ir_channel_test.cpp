@@ -37,7 +37,8 @@ struct Received {
 std::vector<Received> take_all(World& world, std::uint32_t robot) {
     std::vector<Received> messages;
     while (auto const message = world.mailboxes.take(robot)) {
-        std::ranges::copy(message->payload, messages.emplace_back(message->header).payload.begin());
+        messages.push_back({.header = message->header});
+        std::ranges::copy(message->payload, messages.back().payload.begin());
     }
     return messages;
 }
