@@ -33,8 +33,9 @@ inline constexpr std::uint8_t kUnread = 32;  // a register after x31, in the pla
 /// together, with branches that are not taken and shifts by one bit; the cycles between two steps that are executed one
 /// after the other are a difference. Only what leaves this order, or takes longer, counts:
 ///
-///     other_cycles    of a branch or jal: what is added to (cycles that have passed) - (cycles_before of the step) when
-///                     it is taken; of jalr: the cycles it takes; of a shift by a register: the cycles of a further bit
+///     other_cycles    of a branch or jal: what is added to (cycles that have passed) - (cycles_before of the step)
+///                     when it is taken; of jalr: the cycles it takes; of a shift by a register: the cycles of a
+///                     further bit
 ///     cycles_to_end   cycles_before of the next step, or this one, after which one of those may have changed the sum:
 ///                     jal, jalr, a shift by a register, or a stop. If a core has more cycles left, it need not look
 ///                     before it gets there, or takes a branch.
@@ -46,8 +47,8 @@ struct Code {
     std::uint32_t bytes() const { return static_cast<std::uint32_t>(4 * (steps.size() - 1)); }
 };
 
-/// Decodes the words at an address. Words that are no instruction, such as constants between functions, stop a robot only
-/// if it gets there. A part of a word at the end is left out.
+/// Decodes the words at an address. Words that are no instruction, such as constants between functions, stop a robot
+/// only if it gets there. A part of a word at the end is left out.
 Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleCosts const& costs = {});
 
 /// Makes robots stop before the instruction at an address, each time. False if no instruction is there.

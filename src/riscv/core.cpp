@@ -146,8 +146,8 @@ StopReason reason_of(AccessFault fault) {
     return StopReason::store_into_code;
 }
 
-// Each operation ends with a jump to that of the next step, so that the processor of this machine predicts each of these
-// jumps on its own: a switch in a loop, with one jump for all, took twice as long (bench_riscv).
+// Each operation ends with a jump to that of the next step, so that the processor of this machine predicts each of
+// these jumps on its own: a switch in a loop, with one jump for all, took twice as long (bench_riscv).
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"  // addresses of labels are an extension of gcc and clang
 

@@ -1,7 +1,7 @@
 // A robot's processor core: its registers, and running a program on them.
 //
-// Each robot has a Core and a Memory of its own; the Code of a firmware is shared. What happens depends on nothing else,
-// so robots may run on several threads, and a run may be divided into any pieces.
+// Each robot has a Core and a Memory of its own; the Code of a firmware is shared. What happens depends on nothing
+// else, so robots may run on several threads, and a run may be divided into any pieces.
 #pragma once
 
 #include <array>

@@ -1,19 +1,22 @@
 // How many clock cycles instructions take on the robots' processor.
 //
-// The robot has a VexRiscv "Lite" at 21 MHz: five stages with all bypasses, an instruction cache of 2 KiB, no data cache,
-// static branch prediction, an iterative shifter, multiplier and divider, branches decided in the fourth stage (memory).
+// The robot has a VexRiscv "Lite" at 21 MHz: five stages with all bypasses, an instruction cache of 2 KiB, no data
+// cache, static branch prediction, an iterative shifter, multiplier and divider, branches decided in the fourth stage
+// (memory).
 //
-// Sources: the configuration of "Lite" is the line of VexRiscv_Lite.v in the Makefile of litex-hub/pythondata-cpu-vexriscv;
-// cycles are from the section "Plugins" of SpinalHDL/VexRiscv's README. What is marked as an estimate is ours, from the
-// pipeline as the README describes it, and has not been measured on a robot. There is no model of cache misses (a line of
-// 8 words) or of the slow flash: code is taken to be in the instruction cache.
+// Sources: the configuration of "Lite" is the line of VexRiscv_Lite.v in the Makefile of
+// litex-hub/pythondata-cpu-vexriscv; cycles are from the section "Plugins" of SpinalHDL/VexRiscv's README. What is
+// marked as an estimate is ours, from the pipeline as the README describes it, and has not been measured on a robot.
+// There is no model of cache misses (a line of 8 words) or of the slow flash: code is taken to be in the instruction
+// cache.
 #pragma once
 
 #include <cstdint>
 
 namespace pogosim {
 
-/// Cycles, at least 1 each but for shift_further_bit. "1 +" is the cycle that each instruction takes in a full pipeline.
+/// Cycles, at least 1 each but for shift_further_bit. "1 +" is the cycle that each instruction takes in a full
+/// pipeline.
 struct CycleCosts {
     std::uint16_t alu = 1;                // addition, comparison, logic, lui, auipc, fence
     std::uint16_t shift = 1;              // by 0 bits or 1

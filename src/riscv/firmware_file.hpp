@@ -27,7 +27,7 @@ struct Firmware {
     std::uint32_t entry = 0;              // where it starts
     std::vector<FirmwareSymbol> symbols;  // ascending by address
 
-    /// Absent: null. Of several with one name, the first one.
+    /// Null: there is none. If several have the name, it is the first one.
     FirmwareSymbol const* find(std::string_view name) const;
 
     /// The function at an address; null: none is known there.
@@ -44,8 +44,8 @@ struct FirmwareMemory {
 /// addresses (those of `objcopy -O binary`), and the rest of the memory is zero.
 ///
 /// Throws ConfigError that begins with `file`, the name of the file in messages, for what is no ELF file of 32 bits,
-/// little-endian, for RISC-V, executable, without compressed instructions and floating-point registers; is cut off; has no
-/// symbols; or does not fit into the memory.
+/// little-endian, for RISC-V, executable, without compressed instructions and floating-point registers; is cut off; has
+/// no symbols; or does not fit into the memory.
 ///
 /// Sources: Tool Interface Standard, Executable and Linking Format Specification, version 1.2 (1995); RISC-V ELF psABI
 /// Specification, version 1.0 (2022), chapter "ELF Object Files".

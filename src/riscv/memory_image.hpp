@@ -1,7 +1,7 @@
 // The memory of a simulated robot's processor: its own RAM, and a flash that it can only read.
 //
-// Robots of a firmware begin with the same contents, an image. A robot gets a copy of a page when it first writes to it;
-// what it never writes to (its program, constants, unused memory) exists once for all.
+// Robots of a firmware begin with the same contents, an image. A robot gets a copy of a page when it first writes to
+// it; what it never writes to (its program, constants, unused memory) exists once for all.
 #pragma once
 
 #include <cstddef>

@@ -217,7 +217,7 @@ def test_optimiser_that_asks_for_no_points(points: str, tmp_path: Path) -> None:
     done = called(tmp_path, tmp_path, *search, "--max-evals", "5")
     assert done.code == 2, done.text
     problem = (
-        "optimizer 'thing': ask() must return points, numbers of shape (points, 1), each from 0 to 1; found an array"
+        "optimiser 'thing': ask() must return points, numbers of shape (points, 1), each from 0 to 1; found an array"
     )
     assert problem in done.errors
     assert "Traceback" not in done.text

@@ -1,5 +1,5 @@
-// What a step of the processor does, written a second time and plainly: word by word, with numbers of 64 bits and no more
-// in common with src/riscv than the manual.
+// What a step of the processor does, written a second time and plainly: word by word, with numbers of 64 bits and no
+// more in common with src/riscv than the manual.
 #pragma once
 
 #include <array>

@@ -108,7 +108,7 @@ class Search:
         columns = len(self.space.init)
         if len(shape) != 2 or shape[0] == 0 or shape[1] != columns or not np.all(np.isfinite(asked)):
             raise OptimizeError(
-                f"optimizer '{self.settings.optimizer}': ask() must return points, numbers of shape (points, "
+                f"optimiser '{self.settings.optimizer}': ask() must return points, numbers of shape (points, "
                 f"{columns}), each from 0 to 1; found an array of shape {shape}; update its package, or take another"
             )
         return asked
