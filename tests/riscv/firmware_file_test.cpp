@@ -88,7 +88,7 @@ Bytes elf() {
     put_symbol(file, 1, 6, kCodeAt + 8, 8, 2);
     put_symbol(file, 2, 1, kCodeAt, 8, 2);
     put_symbol(file, 3, 16, kCodeAt + 16, 16, 1);
-    put(file, kNames, 0, kTexts.size());
+    file.resize(kNames + kTexts.size());
     std::memcpy(&file[kNames], kTexts.data(), kTexts.size());
     return file;
 }
