@@ -127,21 +127,23 @@ def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: di
     return digest.hexdigest()
 
 
-def named_digests(
-    node: Any, folders: tuple[Path, ...], digests: dict[Path, str], naming: tuple[Path, ...] = ()
-) -> Iterator[str]:
-    """Yield the digests of files that a configuration, or a file in YAML, names; `naming`: the files that led there."""
+def named_digests(node: Any, folders: tuple[Path, ...], digests: dict[Path, str]) -> Iterator[str]:
+    """Yield the digests of files that a configuration, or a file in YAML, names; see `world_digest`."""
     for text in texts_in(node):
-        if not 0 < len(text) < 1024 or "\0" in text:
-            continue
-        for path in [folder / text for folder in folders]:
-            if path not in digests:
-                digests[path] = file_digest(path)
-            if digests[path]:
-                yield digests[path]
-                if path not in naming:
-                    yield from named_digests(entries_in(path), (*folders, path.parent), digests, (*naming, path))
-                break
+        if 0 < len(text) < 1024 and "\0" not in text:
+            for path in [folder / text for folder in folders]:
+                if path not in digests:
+                    digests[path] = ""  # for files that name each other
+                    digests[path] = digest_with_named(path, folders, digests)
+                if digests[path]:
+                    yield digests[path]
+                    break
+
+
+def digest_with_named(path: Path, folders: tuple[Path, ...], digests: dict[Path, str]) -> str:
+    """Return the digest of a file, and those of the files that it names; empty if it cannot be read."""
+    own = file_digest(path)
+    return own and " ".join([own, *named_digests(entries_in(path), (*folders, path.parent), digests)])
 
 
 def config_hash(entries: dict[str, Any]) -> str:
