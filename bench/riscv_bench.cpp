@@ -9,7 +9,6 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -38,7 +37,7 @@ std::string bytes_of(char const* file) {
 
 /// Does a workload from the beginning, in pieces of so many cycles.
 Core run_all(Firmware const& firmware, Workload const& work, std::uint64_t cycles) {
-    Memory memory(std::make_shared<MemoryImage const>(firmware.image));
+    Memory memory(firmware.image);
     Core core{.x = {}, .pc = firmware.entry};
     core.x[10] = work.which;  // registers of the first two arguments
     core.x[11] = work.count;

@@ -54,10 +54,10 @@ public:
     Firmware read(CycleCosts const& costs) const {
         check_header();
         Firmware firmware;
-        firmware.image = image();
+        firmware.image = std::make_shared<MemoryImage const>(image());
         std::vector<Section> const sections = all_sections();
         auto const [begin, end] = range_of_code(sections);
-        std::span const ram(firmware.image.bytes);
+        std::span const ram(firmware.image->bytes);
         firmware.code = decode_code(begin, ram.subspan(begin - memory_.address, end - begin), costs);
         firmware.entry = number<4>(0, 24);
         if (firmware.entry < begin || firmware.entry >= end) {

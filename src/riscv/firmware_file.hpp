@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,10 +23,10 @@ struct FirmwareSymbol {
 };
 
 struct Firmware {
-    MemoryImage image;                    // as it is when the robot starts
-    Code code;                            // of its executable sections
-    std::uint32_t entry = 0;              // where it starts
-    std::vector<FirmwareSymbol> symbols;  // ascending by address
+    std::shared_ptr<MemoryImage const> image;  // as it is when a robot starts
+    Code code;                                 // of its executable sections
+    std::uint32_t entry = 0;                   // where it starts
+    std::vector<FirmwareSymbol> symbols;       // ascending by address
 
     /// Null: there is none. If several have the name, it is the first one.
     FirmwareSymbol const* find(std::string_view name) const;

@@ -3,7 +3,6 @@
 
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <span>
 #include <string>
 
@@ -34,10 +33,9 @@ TEST(RiscvCompiled, ProgramHasItsFunctionsByName) {
 
 TEST(RiscvCompiled, ProgramHasTheResultsOfThisMachine) {
     Firmware const firmware = program();
-    auto const image = std::make_shared<MemoryImage const>(firmware.image);
     for (std::uint32_t const which : {kCrc, kSort, kFloats, kMixture}) {
         for (std::uint32_t const count : {0U, 1U, 7U, which == kSort ? 20U : 5000U}) {
-            Memory memory(image);
+            Memory memory(firmware.image);
             Core core{.x = {}, .pc = firmware.entry};
             core.x[10] = which;
             core.x[11] = count;

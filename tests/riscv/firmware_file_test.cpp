@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -111,9 +110,9 @@ Bytes changed(std::size_t at, std::uint32_t value, std::size_t size = 4) {
 TEST(FirmwareFile, IsInMemoryAtItsPhysicalAddresses) {
     Firmware const firmware = read_firmware("robot.elf", elf());
     EXPECT_EQ(firmware.entry, kCodeAt);
-    ASSERT_EQ(firmware.image.bytes.size(), kMemoryBytes);
-    EXPECT_EQ(read_little_endian<4>(&firmware.image.bytes[kCodeAt + 12]), kNoOperation);
-    EXPECT_TRUE(std::all_of(firmware.image.bytes.begin() + kCodeAt + 16, firmware.image.bytes.end(),
+    ASSERT_EQ(firmware.image->bytes.size(), kMemoryBytes);
+    EXPECT_EQ(read_little_endian<4>(&firmware.image->bytes[kCodeAt + 12]), kNoOperation);
+    EXPECT_TRUE(std::all_of(firmware.image->bytes.begin() + kCodeAt + 16, firmware.image->bytes.end(),
                             [](std::byte byte) { return byte == std::byte{0}; }));
     EXPECT_EQ(firmware.code.address, kCodeAt);
     EXPECT_EQ(firmware.code.bytes(), 16U);
@@ -142,7 +141,7 @@ TEST(FirmwareFile, FindsFunctionsByNameAndByAddress) {
 TEST(FirmwareFile, RunsUntilTheEndOfItsCode) {
     Firmware const firmware = read_firmware("robot.elf", elf());
     Core core{.x = {}, .pc = firmware.entry, .cycles = 0};
-    Memory memory(std::make_shared<MemoryImage const>(firmware.image));
+    Memory memory(firmware.image);
     Stop const stop = run(core, memory, firmware.code, 100);
     EXPECT_EQ(stop.reason, StopReason::jump_outside);
     EXPECT_EQ(stop.pc, kCodeAt + 16);
