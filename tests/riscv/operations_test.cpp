@@ -1,6 +1,8 @@
 // Each operation does what the reference does, on numbers where operations differ.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "riscv/reference_core.hpp"
 #include "riscv/robot.hpp"
 
