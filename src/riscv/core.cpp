@@ -72,6 +72,24 @@ bool is_taken(Operation branch, std::uint32_t a, std::uint32_t b) {
     }
 }
 
+// What stops execute() at an access of a control and status register, which is done outside: it is rare.
+constexpr auto kAccessesRegister = static_cast<StopReason>(0xff);
+
+/// What a control and status register contains. Source: The RISC-V Instruction Set Manual, Volume II: Privileged
+/// Architecture, version 20211203, table 2.5.
+std::uint32_t read_register(std::uint32_t number, std::uint64_t cycles) {
+    switch (number & 0xfffU) {
+        case 0xb00:  // mcycle
+        case 0xc00:  // cycle
+            return static_cast<std::uint32_t>(cycles);
+        case 0xb80:  // mcycleh
+        case 0xc80:  // cycleh
+            return upper(cycles);
+        default:
+            return 0;
+    }
+}
+
 /// How many bits a shift has beyond the first.
 constexpr std::int64_t further_bits(std::uint32_t shift) {
     return std::max<std::int64_t>(shift % 32, 1) - 1;
@@ -184,12 +202,12 @@ template <bool LooksAtEachStep>
 Outcome execute(Registers& x, Memory& memory, Code const& code, Position at) {
     // In the order of Operation.
     static constexpr void const* kLabels[] = {
-        &&illegal, &&lui,   &&auipc, &&jal,    &&jalr,        &&beq,          &&bne,           &&blt,  &&bge,
-        &&bltu,    &&bgeu,  &&lb,    &&lh,     &&lw,          &&lbu,          &&lhu,           &&sb,   &&sh,
-        &&sw,      &&addi,  &&slti,  &&sltiu,  &&xori,        &&ori,          &&andi,          &&slli, &&srli,
-        &&srai,    &&add,   &&sub,   &&sll,    &&slt,         &&sltu,         &&xor_,          &&srl,  &&sra,
-        &&or_,     &&and_,  &&mul,   &&mulh,   &&mulhsu,      &&mulhu,        &&div,           &&divu, &&rem,
-        &&remu,    &&fence, &&ecall, &&ebreak, &&intercepted, &&jump_outside, &&branch_outside};
+        &&illegal, &&lui,   &&auipc, &&jal,    &&jalr,   &&beq,   &&bne,         &&blt,          &&bge,
+        &&bltu,    &&bgeu,  &&lb,    &&lh,     &&lw,     &&lbu,   &&lhu,         &&sb,           &&sh,
+        &&sw,      &&addi,  &&slti,  &&sltiu,  &&xori,   &&ori,   &&andi,        &&slli,         &&srli,
+        &&srai,    &&add,   &&sub,   &&sll,    &&slt,    &&sltu,  &&xor_,        &&srl,          &&sra,
+        &&or_,     &&and_,  &&mul,   &&mulh,   &&mulhsu, &&mulhu, &&div,         &&divu,         &&rem,
+        &&remu,    &&fence, &&ecall, &&ebreak, &&csr,    &&wfi,   &&intercepted, &&jump_outside, &&branch_outside};
     static_assert(std::size(kLabels) == static_cast<std::size_t>(Operation::branch_outside) + 1);
 
     std::uint32_t a = 0;  // rs1
@@ -379,6 +397,10 @@ ecall:
     return {at, StopReason::ecall};
 ebreak:
     return {at, StopReason::ebreak};
+csr:
+    return {at, kAccessesRegister};
+wfi:
+    return {at, StopReason::wait_for_interrupt};
 illegal:
 auipc:  // has become lui
     return {at, StopReason::illegal_instruction};
@@ -389,9 +411,10 @@ auipc:  // has become lui
 #undef POGOSIM_GO_ON
 #pragma GCC diagnostic pop
 
-}  // namespace
+constexpr std::uint64_t kMostCycles = std::numeric_limits<std::int64_t>::max() / 2;
 
-Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles) {
+/// Runs until the end, or an instruction that is not executed here. `most_cycles` is not above kMostCycles.
+Stop run_instructions(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles) {
     Step const* const step = step_at(core.pc, code);
     if (step == nullptr) {
         return {StopReason::jump_outside, core.pc, core.pc};
@@ -399,9 +422,7 @@ Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles
     Registers x{};
     std::ranges::copy(core.x, x.begin());
     x[0] = 0;
-    constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max() / 2;
-    auto const budget = static_cast<std::int64_t>(std::min(most_cycles, kMost));
-
+    auto const budget = static_cast<std::int64_t>(most_cycles);
     std::int64_t const begin = budget + code.cycles_before[static_cast<std::size_t>(step - code.steps.data())];
     Outcome outcome{{step, begin}, StopReason::budget_used};
     if (begin > step->cycles_to_end) {
@@ -415,6 +436,31 @@ Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles
     core.pc = address_of(outcome.at.step, code);
     core.cycles += static_cast<std::uint64_t>(budget - cycles_left(outcome.at, code));
     return {outcome.reason, core.pc, outcome.address};
+}
+
+/// Executes the instruction at pc, which accesses a control and status register.
+void access_register(Core& core, Code const& code) {
+    Step const& step = *step_at(core.pc, code);
+    auto const index = static_cast<std::size_t>(&step - code.steps.data());
+    std::uint32_t const value = read_register(as_unsigned(step.immediate), core.cycles);
+    if (step.rd != kUnread) {
+        core.x[step.rd] = value;
+    }
+    core.pc += 4;
+    core.cycles += code.cycles_before[index + 1] - code.cycles_before[index];
+}
+
+}  // namespace
+
+Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles) {
+    std::uint64_t const end = core.cycles + std::min(most_cycles, kMostCycles);
+    for (;;) {
+        Stop const stop = run_instructions(core, memory, code, end - std::min(end, core.cycles));
+        if (stop.reason != kAccessesRegister) {
+            return stop;
+        }
+        access_register(core, code);
+    }
 }
 
 }  // namespace pogosim

@@ -32,6 +32,7 @@ enum class StopReason : std::uint8_t {
     jump_outside,      // a jump to where there is no code or, at pc, no code at all
     ecall,
     ebreak,
+    wait_for_interrupt,  // wfi: there are no interrupts, so the program is over
 };
 
 /// Why, and where, a core stopped.
@@ -48,6 +49,9 @@ struct Stop {
 /// An instruction begins if a cycle is left, and is then finished: the last one may take more than most_cycles. The
 /// instruction at pc, where it stops, has had no effect and has taken no cycle: a caller may do its work, and go on at
 /// another pc.
+///
+/// Of the control and status registers, there is the counter of cycles (cycle, mcycle, and their upper halves). All
+/// others read as 0, and what is written to them is lost: there are no interrupts that they could set up.
 Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles);
 
 }  // namespace pogosim

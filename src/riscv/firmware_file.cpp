@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -32,6 +33,7 @@ constexpr unsigned kFunction = 2;             // type of a symbol; below it, var
 struct Segment {
     std::uint32_t type;
     std::uint32_t offset;
+    std::uint32_t address;  // where the program uses it
     std::uint32_t physical_address;
     std::uint32_t file_bytes;
     std::uint32_t memory_bytes;
@@ -57,8 +59,7 @@ public:
         firmware.image = std::make_shared<MemoryImage const>(image());
         std::vector<Section> const sections = all_sections();
         auto const [begin, end] = range_of_code(sections);
-        std::span const ram(firmware.image->bytes);
-        firmware.code = decode_code(begin, ram.subspan(begin - memory_.address, end - begin), costs);
+        firmware.code = decode_code(begin, code(*firmware.image, begin, end), costs);
         firmware.entry = number<4>(0, 24);
         if (firmware.entry < begin || firmware.entry >= end) {
             fail(fmt::format("starts at 0x{:08x}, where it has no code", firmware.entry));
@@ -131,6 +132,7 @@ private:
         return table<Segment>(28, 42, 32, [this](std::uint64_t at) {
             return Segment{.type = number<4>(at, 0),
                            .offset = number<4>(at, 4),
+                           .address = number<4>(at, 8),
                            .physical_address = number<4>(at, 12),
                            .file_bytes = number<4>(at, 16),
                            .memory_bytes = number<4>(at, 20)};
@@ -148,29 +150,71 @@ private:
         });
     }
 
-    std::uint64_t end_of_memory() const { return std::uint64_t{memory_.address} + memory_.bytes; }
-
     bool is_in_memory(std::uint32_t address, std::uint32_t size) const {
-        return address >= memory_.address && std::uint64_t{address} + size <= end_of_memory();
+        return address >= memory_.address &&
+               std::uint64_t{address} + size <= std::uint64_t{memory_.address} + memory_.bytes;
+    }
+
+    bool is_in_flash(std::uint32_t address, std::uint32_t size) const {
+        return address >= memory_.flash_address &&
+               std::uint64_t{address} + size <= std::uint64_t{memory_.flash_address} + memory_.flash_bytes;
+    }
+
+    std::string text_of_memory() const {
+        return fmt::format("memory is from 0x{:08x} to 0x{:08x}, flash from 0x{:08x} to 0x{:08x}", memory_.address,
+                           std::uint64_t{memory_.address} + memory_.bytes - 1, memory_.flash_address,
+                           std::uint64_t{memory_.flash_address} + memory_.flash_bytes - 1);
     }
 
     MemoryImage image() const {
-        MemoryImage image{.address = memory_.address, .bytes = std::vector<std::byte>(memory_.bytes), .flash = {}};
+        MemoryImage image{.address = memory_.address,
+                          .bytes = std::vector<std::byte>(memory_.bytes),
+                          .flash_address = memory_.flash_address,
+                          .flash = {}};
         for (Segment const& segment : all_segments()) {
-            if (segment.type != kLoaded || segment.memory_bytes == 0) {
-                continue;
+            if (segment.type == kLoaded && segment.memory_bytes > 0) {
+                place(segment, image);
             }
-            std::uint32_t const size = std::max(segment.file_bytes, segment.memory_bytes);
-            if (!is_in_memory(segment.physical_address, size)) {
-                fail(
-                    fmt::format("does not fit into the robot's memory: it has {} bytes at 0x{:08x}, and the memory is "
-                                "from 0x{:08x} to 0x{:08x}",
-                                size, segment.physical_address, memory_.address, end_of_memory() - 1));
-            }
-            std::ranges::copy(part(segment.offset, segment.file_bytes, "a segment"),
-                              image.bytes.begin() + (segment.physical_address - memory_.address));
         }
         return image;
+    }
+
+    void check_is_in_memory(std::uint32_t address, std::uint32_t size) const {
+        if (!is_in_memory(address, size)) {
+            fail(fmt::format("does not fit into the robot's memory: it has {} bytes at 0x{:08x}, and {}", size, address,
+                             text_of_memory()));
+        }
+    }
+
+    void place(Segment const& segment, MemoryImage& image) const {
+        std::span const bytes = part(segment.offset, segment.file_bytes, "a segment");
+        std::uint32_t const at = segment.physical_address;
+        if (is_in_flash(at, segment.file_bytes) && segment.file_bytes > 0) {
+            if (!is_in_flash(segment.address, segment.memory_bytes)) {
+                check_is_in_memory(segment.address, segment.memory_bytes);  // its start code copies it there
+            }
+            std::size_t const offset = at - memory_.flash_address;
+            std::size_t const end = offset + segment.file_bytes;
+            image.flash.resize(std::max(image.flash.size(), (end + 3) / 4 * 4), std::byte{0xff});
+            std::ranges::copy(bytes, image.flash.begin() + static_cast<std::ptrdiff_t>(offset));
+            return;
+        }
+        std::uint32_t const size = std::max(segment.file_bytes, segment.memory_bytes);
+        // Memory that is only reserved is where the program uses it.
+        std::uint32_t const used_at = segment.file_bytes > 0 ? at : segment.address;
+        check_is_in_memory(used_at, size);
+        std::ranges::copy(bytes, image.bytes.begin() + (used_at - memory_.address));
+    }
+
+    /// What is in memory or flash where the code is.
+    std::span<std::byte const> code(MemoryImage const& image, std::uint32_t begin, std::uint32_t end) const {
+        bool const is_memory = is_in_memory(begin, end - begin);
+        std::span const bytes(is_memory ? image.bytes : image.flash);
+        std::uint32_t const offset = begin - (is_memory ? image.address : image.flash_address);
+        if (std::uint64_t{offset} + (end - begin) > bytes.size()) {
+            fail(fmt::format("has no instructions at 0x{:08x}, where its code should be", begin));
+        }
+        return bytes.subspan(offset, end - begin);
     }
 
     struct Range {
@@ -184,15 +228,18 @@ private:
             if ((section.flags & both) != both || section.bytes == 0) {
                 continue;
             }
-            if (!is_in_memory(section.address, section.bytes)) {
-                fail(fmt::format("has code outside of the robot's memory: {} bytes at 0x{:08x}", section.bytes,
-                                 section.address));
+            if (!is_in_memory(section.address, section.bytes) && !is_in_flash(section.address, section.bytes)) {
+                fail(fmt::format("has code outside of the robot's memory: {} bytes at 0x{:08x}; {}", section.bytes,
+                                 section.address, text_of_memory()));
             }
             range.begin = std::min(range.begin, section.address);
             range.end = std::max(range.end, section.address + section.bytes);
         }
         if (range.end == 0) {
             fail("has no section of code: was it stripped?");
+        }
+        if (is_in_memory(range.begin, 1) != is_in_memory(range.end - 1, 1)) {
+            fail("has code in memory and in flash: only one of them can be simulated");
         }
         if (range.begin % 4 != 0) {
             fail(fmt::format("has code at 0x{:08x}, which is no multiple of 4", range.begin));

@@ -35,14 +35,17 @@ struct Firmware {
     FirmwareSymbol const* function_at(std::uint32_t address) const;
 };
 
-/// Where a robot's memory is.
+/// Where a robot's memory is, and its flash, from which programs may also run.
 struct FirmwareMemory {
     std::uint32_t address = 0;
     std::uint32_t bytes = kMemoryBytes;
+    std::uint32_t flash_address = kFlashAddress;
+    std::uint32_t flash_bytes = kFlashBytes;
 };
 
 /// Reads a firmware out of the bytes of its file. As when a firmware is uploaded, its parts are at their physical
-/// addresses (those of `objcopy -O binary`), and the rest of the memory is zero.
+/// addresses (those of `objcopy -O binary`), in memory or in flash, and the rest of the memory is zero. Its code is
+/// either all in memory, or all in flash.
 ///
 /// Throws ConfigError that begins with `file`, the name of the file in messages, for what is no ELF file of 32 bits,
 /// little-endian, for RISC-V, executable, without compressed instructions and floating-point registers; is cut off; has

@@ -53,7 +53,10 @@ constexpr ByFunct3 kOfRegisters{add, sll, slt, sltu, xor_, srl, or_, and_};
 constexpr ByFunct3 kMultiplications{mul, mulh, mulhsu, mulhu, div, divu, rem, remu};
 
 // Values of the field funct7.
-constexpr std::uint32_t kOther = 0b0100000;  // subtraction, arithmetic shifts
+constexpr std::uint32_t kFenceInstructions = 1;  // funct3 of fence.i
+constexpr std::uint32_t kFlushCache = 5;         // VexRiscv's own, funct3 beside those of fence and fence.i
+constexpr std::uint32_t kNoAccess = 4;           // funct3 that no access of a control and status register has
+constexpr std::uint32_t kOther = 0b0100000;      // subtraction, arithmetic shifts
 constexpr std::uint32_t kMultiplication = 0b0000001;
 
 Operation operation_with_immediate(std::uint32_t funct3, std::uint32_t funct7) {
@@ -118,10 +121,17 @@ Instruction decode(std::uint32_t word) {
             read = {operation_of_registers(funct3, funct7), rd, rs1, rs2, 0};
             break;
         case 0b0001111:  // its other fields are reserved for finer fences, and to be ignored (section 2.7)
-            read.operation = funct3 == 0 ? fence : illegal;
+            read.operation = funct3 == 0 || funct3 == kFenceInstructions || funct3 == kFlushCache ? fence : illegal;
             break;
         case 0b1110011:
-            read.operation = word == 0x00000073 ? ecall : word == 0x00100073 ? ebreak : illegal;
+            if (funct3 != 0 && funct3 != kNoAccess) {
+                read = {csr, rd, rs1, 0, immediate_i(word)};
+            } else {
+                read.operation = word == 0x00000073   ? ecall
+                                 : word == 0x00100073 ? ebreak
+                                 : word == 0x10500073 ? wfi
+                                                      : illegal;
+            }
             break;
         default:
             break;

@@ -10,7 +10,7 @@ namespace pogosim {
 
 /// Named as in the manual. An underscore follows names that C++ has taken.
 enum class Operation : std::uint8_t {
-    illegal,  // nothing that this processor has: compressed, atomic, floating-point, CSRs, fence.i
+    illegal,  // nothing that this processor has: compressed, atomic, floating-point, mret
     lui,
     auipc,
     jal,
@@ -56,9 +56,11 @@ enum class Operation : std::uint8_t {
     divu,
     rem,
     remu,
-    fence,
+    fence,  // and fence.i, and what empties VexRiscv's caches
     ecall,
     ebreak,
+    csr,  // any access of a control and status register, whose number is in the lower 12 bits of immediate
+    wfi,
     // No instructions, but what Code has in the place of some.
     intercepted,
     jump_outside,    // jal to where there is no code, or the end of the code

@@ -14,6 +14,7 @@ namespace pogosim {
 
 inline constexpr std::uint32_t kMemoryBytes = 131072;     // of a Pogobot; key 'memory_bytes' of a robot model
 inline constexpr std::uint32_t kFlashAddress = 0x200000;  // of a Pogobot
+inline constexpr std::uint32_t kFlashBytes = 0x200000;    // of a Pogobot
 inline constexpr std::uint32_t kPageBytes = 1024;
 
 /// What all robots of a firmware begin with. Sizes count in whole words: a part of a word at the end is no memory.

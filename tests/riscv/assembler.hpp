@@ -36,6 +36,7 @@ inline constexpr Encoding kEncodings[] = {
     {Operation::mulhsu, 'R', 0x33, 2, 1}, {Operation::mulhu, 'R', 0x33, 3, 1}, {Operation::div, 'R', 0x33, 4, 1},
     {Operation::divu, 'R', 0x33, 5, 1},   {Operation::rem, 'R', 0x33, 6, 1},   {Operation::remu, 'R', 0x33, 7, 1},
     {Operation::fence, 'N', 0x0ff0000f},  {Operation::ecall, 'N', 0x00000073}, {Operation::ebreak, 'N', 0x00100073},
+    {Operation::wfi, 'N', 0x10500073},    {Operation::csr, 'I', 0x73, 2},
 };
 
 inline Encoding const& encoding_of(Operation operation) {

@@ -245,4 +245,31 @@ TEST(RiscvCore, RobotsOnTwoThreadsDoWhatOneAloneDoes) {
     EXPECT_EQ(second_memory.copied_pages(), 1U);
 }
 
+TEST(RiscvCore, ReadsItsCounterOfCyclesAndNoOtherRegister) {
+    constexpr std::uint32_t read_cycle = 0xc0002573;            // rdcycle a0
+    constexpr std::uint32_t read_upper_half = 0xb80025f3;       // csrr a1, mcycleh
+    constexpr std::uint32_t set_interrupt_mask = 0xbc02a673;    // csrrs a2, 0xbc0, t0: VexRiscv's
+    constexpr std::uint32_t write_without_result = 0x30529073;  // csrw mtvec, t0
+    Robot robot({write_without_result, set_interrupt_mask, read_cycle, read_upper_half, encode(Operation::ebreak)});
+    robot.core.x[5] = robot.core.x[12] = 7;
+    robot.core.cycles = (std::uint64_t{3} << 32) + 100;
+    EXPECT_EQ(robot.run(), (Stop{StopReason::ebreak, 16, 0}));
+    EXPECT_EQ(robot.core.x[10], 102U);
+    EXPECT_EQ(robot.core.x[11], 3U);
+    EXPECT_EQ(robot.core.x[12], 0U);
+    EXPECT_EQ(robot.core.x[0], 0U);
+    EXPECT_EQ(robot.core.cycles, (std::uint64_t{3} << 32) + 104);
+}
+
+TEST(RiscvCore, EndsBeforeAnAccessForWhichNoCycleIsLeft) {
+    Robot robot({0xc0002573, 0xc0002573});
+    EXPECT_EQ(robot.run(1), (Stop{StopReason::budget_used, 4, 0}));
+    EXPECT_EQ(robot.core.cycles, 1U);
+}
+
+TEST(RiscvCore, StopsWhereItWouldWaitForAnInterrupt) {
+    Robot robot({encode(Operation::wfi)});
+    EXPECT_EQ(robot.run(), (Stop{StopReason::wait_for_interrupt, 0, 0}));
+}
+
 }  // namespace

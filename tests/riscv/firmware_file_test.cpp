@@ -118,6 +118,41 @@ TEST(FirmwareFile, IsInMemoryAtItsPhysicalAddresses) {
     EXPECT_EQ(firmware.code.bytes(), 16U);
 }
 
+/// The same in flash, from where its variables are copied to memory.
+Bytes elf_in_flash() {
+    Bytes file = elf();
+    put(file, 24, kFlashAddress + kCodeAt);
+    put(file, kSegment + 8, 0x40);
+    put(file, kSegment + 12, kFlashAddress + kCodeAt);
+    put(file, kSections + 40 + 12, kFlashAddress + kCodeAt);
+    return file;
+}
+
+TEST(FirmwareFile, MayBeInFlash) {
+    Firmware const firmware = read_firmware("robot.elf", elf_in_flash());
+    EXPECT_EQ(firmware.entry, kFlashAddress + kCodeAt);
+    EXPECT_EQ(firmware.code.address, kFlashAddress + kCodeAt);
+    EXPECT_EQ(firmware.code.bytes(), 16U);
+    ASSERT_EQ(firmware.image->flash.size(), kCodeAt + 16);
+    EXPECT_EQ(firmware.image->flash[0], std::byte{0xff});
+    EXPECT_TRUE(std::ranges::all_of(firmware.image->bytes, [](std::byte byte) { return byte == std::byte{0}; }));
+    Core core{.x = {}, .pc = firmware.entry, .cycles = 0};
+    Memory memory(firmware.image);
+    EXPECT_EQ(run(core, memory, firmware.code, 3).pc, firmware.entry + 12);
+}
+
+TEST(FirmwareFile, InFlashMustFitThereAndItsVariablesIntoMemory) {
+    EXPECT_NE(refusal(elf_in_flash(), {.flash_bytes = kCodeAt + 15}), "");
+    EXPECT_EQ(refusal(elf_in_flash(), {.flash_bytes = kCodeAt + 16}), "");
+    Bytes file = elf_in_flash();
+    put(file, kSegment + 8, kMemoryBytes - 31);
+    EXPECT_NE(refusal(file).find("does not fit into the robot's memory"), std::string::npos) << refusal(file);
+    file = elf_in_flash();
+    put(file, kSections + 40 + 12, kCodeAt);  // not where the segment is
+    put(file, 24, kCodeAt);
+    EXPECT_EQ(refusal(file), "");  // its memory is zero, which is no instruction: it stops there
+}
+
 TEST(FirmwareFile, FindsFunctionsByNameAndByAddress) {
     Firmware const firmware = read_firmware("robot.elf", elf());
     ASSERT_NE(firmware.find("user_step"), nullptr);

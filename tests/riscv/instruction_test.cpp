@@ -51,12 +51,25 @@ TEST(RiscvInstruction, WordsOfAnAssemblerAreRead) {
 
 TEST(RiscvInstruction, WhatTheProcessorLacksIsIllegal) {
     for (std::uint32_t const word :
-         {0x00000000U, 0xffffffffU, 0x00004501U /* c.li */, 0x30529073U /* csrw mtvec */, 0xc0002573U /* rdcycle */,
-          0x0000100fU /* fence.i */, 0x100522afU /* lr.w */, 0x00052507U /* flw */, 0x00b57553U /* fadd.s */,
-          0x30200073U /* mret */, 0x00053503U /* ld */, 0x00b53023U /* sd */, 0x0255153bU /* a word of RV64 */,
-          0x02051513U /* slli by 32 */, 0x40051513U /* slli with bit 30 */, 0x00200073U, 0x00008073U}) {
+         {0x00000000U, 0xffffffffU, 0x00004501U /* c.li */, 0x00054573U /* no access of a register */,
+          0x100522afU /* lr.w */, 0x00052507U /* flw */, 0x00b57553U /* fadd.s */, 0x30200073U /* mret */,
+          0x00053503U /* ld */, 0x00b53023U /* sd */, 0x0255153bU /* a word of RV64 */, 0x02051513U /* slli by 32 */,
+          0x40051513U /* slli with bit 30 */, 0x00200073U, 0x00008073U}) {
         EXPECT_EQ(decode(word), Instruction{}) << std::hex << word;
     }
+}
+
+TEST(RiscvInstruction, AccessesOfControlAndStatusRegistersAreRead) {
+    EXPECT_EQ(decode(0x30529073), (Instruction{Operation::csr, 0, 5, 0, 0x305}));            // csrw mtvec, t0
+    EXPECT_EQ(decode(0xc0002573), (Instruction{Operation::csr, 10, 0, 0, 0xc00 - 0x1000}));  // rdcycle a0
+    EXPECT_EQ(decode(0x30046073), (Instruction{Operation::csr, 0, 8, 0, 0x300}));            // csrsi mstatus, 8
+    EXPECT_EQ(decode(0x10500073), Instruction{.operation = Operation::wfi});
+}
+
+TEST(RiscvInstruction, WhatEmptiesCachesIsAFence) {
+    EXPECT_EQ(decode(0x0000100f).operation, Operation::fence);  // fence.i
+    EXPECT_EQ(decode(0x0000500f).operation, Operation::fence);  // as LiteX empties the data cache of a VexRiscv
+    EXPECT_EQ(decode(0x0000200f).operation, Operation::illegal);
 }
 
 TEST(RiscvInstruction, ReservedFieldsOfFencesAreIgnored) {

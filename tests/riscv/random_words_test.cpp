@@ -73,6 +73,9 @@ void expect_reason(Stop const& stop, Robot const& robot) {
         case StopReason::ebreak:
             EXPECT_EQ(at.operation, Operation::ebreak);
             break;
+        case StopReason::wait_for_interrupt:
+            EXPECT_EQ(at.operation, Operation::wfi);
+            break;
         case StopReason::unaligned_access:
             EXPECT_EQ(stop.address, sum);
             EXPECT_NE(stop.address % 4, 0U);
@@ -134,11 +137,15 @@ TEST(RiscvRandomWords, DoWhatTheReferenceDoes) {
             std::uint64_t const budget = random.below(2000);
             std::uint64_t const begin = robot.core.cycles;
             std::uint64_t done = 0;
+            reference.cycles = static_cast<std::int64_t>(begin);
             while (done < budget && reference.step()) {
                 ++done;
+                ++reference.cycles;
             }
-            robot.run(budget);
-            ASSERT_EQ(robot.core.cycles - begin, done) << "program " << program;
+            Stop const stop = robot.run(budget);
+            ASSERT_EQ(robot.core.cycles - begin, done)
+                << "program " << program << ", stopped for reason " << static_cast<int>(stop.reason) << " at "
+                << stop.pc << " word " << std::hex << read_little_endian<4>(&robot.image->bytes[stop.pc]);
             ASSERT_EQ(robot.core.pc, reference.pc) << "program " << program;
             ASSERT_EQ(robot.core.x, reference.x) << "program " << program;
         }

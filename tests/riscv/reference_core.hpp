@@ -13,6 +13,7 @@ struct ReferenceCore {
     std::uint32_t pc = 0;
     std::vector<std::uint8_t> memory;  // from address 0
     std::uint32_t code_bytes = 0;      // the first ones of it
+    std::int64_t cycles = 0;           // that its counter shows
 
     /// Executes an instruction; false, without any effect, if it cannot be.
     bool step() {
@@ -38,7 +39,7 @@ struct ReferenceCore {
                 return jump(rd, pc + distance);
             }
             case 0x67:
-                return kind == 0 && jump(rd, (a + number) / 2 * 2);
+                return kind == 0 && jump(rd, divided_downwards(a + number, 2) * 2);
             case 0x63: {
                 std::int64_t const distance =
                     with_sign(upper / 64 * 4096 + rd % 2 * 2048 + upper % 64 * 32 + rd / 2 * 2, 13);
@@ -61,7 +62,9 @@ struct ReferenceCore {
                 return (upper == 0 || (upper == 32 && (kind == 0 || kind == 5))) &&
                        result(rd, calculated(kind, upper, a, b));
             case 0x0f:
-                return kind == 0 && go_to(pc + 4);
+                return (kind == 0 || kind == 1 || kind == 5) && go_to(pc + 4);
+            case 0x73:
+                return kind % 4 != 0 && result(rd, control_register(word / 1048576));
             default:
                 return false;  // ecall and ebreak stop, too
         }
@@ -82,6 +85,13 @@ private:
 
     static std::int64_t divided_downwards(std::int64_t value, std::int64_t by) {
         return (value - ((value % by) + by) % by) / by;
+    }
+
+    std::int64_t control_register(std::int64_t number) const {
+        std::int64_t const low_half = std::int64_t{1} << 32;
+        bool const is_counter = number % 256 == 0 && (number / 256 == 11 || number / 256 == 12);
+        bool const is_upper_half = number % 256 == 128 && (number / 256 == 11 || number / 256 == 12);
+        return is_counter ? cycles % low_half : is_upper_half ? cycles / low_half : 0;
     }
 
     bool go_to(std::int64_t address) {
