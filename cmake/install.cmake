@@ -1,6 +1,7 @@
 # What `cmake --install` copies: the public headers, the library, the arenas, what projects for robots need (the interface
-# layer's C files, the tool that finds shared state, the project template), pogosim.pc and a CMake package. The build folder
-# gets a pogosim.pc of its own, so that programs can be built against a tree that is not installed:
+# layer's C files, what firmware for the emulated processor needs, the tool that finds shared state, the project template),
+# pogosim.pc and a CMake package. The build folder gets a pogosim.pc of its own, so that programs can be built against a tree
+# that is not installed:
 #
 #   cc -std=c11 main.c -o prog $(PKG_CONFIG_PATH=build/release pkg-config --cflags --libs pogosim)
 include(GNUInstallDirs)
@@ -40,6 +41,8 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${CMAKE_INSTALL_DA
     FILES_MATCHING PATTERN "*.yaml")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/interface" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
     FILES_MATCHING PATTERN "*.c")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/emu" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.c" PATTERN "*.S" PATTERN "*.ld" PATTERN "*.mk")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/template_prj" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
     FILES_MATCHING PATTERN "Makefile" PATTERN "*.mk" PATTERN "*.c" PATTERN "*.yaml" PATTERN "*.md" PATTERN ".gitignore"
     PATTERN "build" EXCLUDE PATTERN "frames" EXCLUDE)
@@ -63,7 +66,7 @@ install(FILES
 # for each of the two places. The installed ones are relative to themselves: the tree may be moved, and `cmake --install
 # --prefix` may choose the place late. Blanks in paths are escaped as pkg-config and shells want it.
 function(pogosim_build_settings folder)
-    foreach(place includedir libdir interfacedir shared_state template)
+    foreach(place includedir libdir interfacedir emudir shared_state template)
         string(REPLACE " " "\\ " ${place} "${${place}}")
     endforeach()
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
@@ -80,6 +83,7 @@ set(prefix "\${pcfiledir}/${to_prefix}")
 set(includedir "${prefix}${CMAKE_INSTALL_INCLUDEDIR}")
 set(libdir "${prefix}${CMAKE_INSTALL_LIBDIR}")
 set(interfacedir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/interface")
+set(emudir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/emu")
 set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
@@ -93,6 +97,7 @@ if(NOT libdir)
     get_target_property(libdir pogosim_library BINARY_DIR)
 endif()
 set(interfacedir "${PROJECT_SOURCE_DIR}/src/interface")
+set(emudir "${PROJECT_SOURCE_DIR}/src/emu")
 set(shared_state "${PROJECT_BINARY_DIR}/tools/pogosim-shared-state")
 set(template "${PROJECT_SOURCE_DIR}/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}")

@@ -1,51 +1,76 @@
-# The firmware of a real robot, for the Makefile's bin and connect: all files of the project and Pogosim's interface layer,
+# The firmware of a robot, for the Makefile's bin, emu and connect: all files of the project and Pogosim's interface layer,
 # compiled and linked according to the Pogobot SDK.
 #
 # The SDK's tools/variables.mak and tools/common.mak define the compiler and its options (TRIPLE, CC, CFLAGS and the macro
-# `compile`) and the robot's addresses (ROM_BASE).
+# `compile`) and the robot's addresses (ROM_BASE). For emu, Pogosim's robot_tools.mk does, and what its folder has besides
+# takes the place of the SDK's headers, linker script and libraries.
+ifeq ($(MAKECMDGOALS),emu)
+TARGET := emu
+# Names of files, in which make takes blanks for the ends of names.
+EMU_FILES := $(subst \ ,?,$(POGOSIM_EMU_DIR))
+include $(EMU_FILES)/robot_tools.mk
+else
+TARGET := bin
 include $(POGO_SDK)/tools/variables.mak
 include $(POGO_SDK)/tools/common.mak
+endif
 
-BIN_DIR := $(BUILD_DIR)/bin
+BIN_DIR := $(BUILD_DIR)/$(TARGET)
 FIRMWARE := $(BIN_DIR)/firmware
 
-.PHONY: bin connect
+.PHONY: bin emu connect
 
-# ---- bin
+# ---- bin and emu
 
 ifneq ($(words $(ROBOT_CATEGORY)),1)
 $(error ROBOT_CATEGORY must be one word, found '$(ROBOT_CATEGORY)')
 endif
 
-LAYER := $(sort $(wildcard $(POGOSIM_INTERFACE_DIR)/*.c))
+# $(call names_in,FOLDER,ENDING): names of the files in a folder, in whose own name blanks are escaped.
+names_in = $(sort $(filter %$(2),$(notdir $(wildcard $(1)/*$(2)))))
 PROGRAM_OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o)
-LAYER_OBJECTS := $(patsubst $(POGOSIM_INTERFACE_DIR)/%,$(BIN_DIR)/pogosim/%.o,$(LAYER))
+LAYER_OBJECTS := $(patsubst %,$(BIN_DIR)/pogosim/%.o,$(call names_in,$(POGOSIM_INTERFACE_DIR),.c))
 UTILS_OBJECTS := $(patsubst %,$(BIN_DIR)/utils/%.o,$(notdir $(UTILS_SOURCES)))
 OBJECTS := $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $(LAYER_OBJECTS)
 # Whether the program uses the layer: one with pogobot.h alone does not, and may have variables of the same names.
 USES_LAYER = grep -q 'pogobase\.h' $(PROGRAM_OBJECTS:.o=.d)
 
-ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto -ffunction-sections -fdata-sections \
-    -I. -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
+ifeq ($(TARGET),emu)
+SDK_INCLUDES := -I$(POGOSIM_EMU_DIR) -I$(POGOSIM_INCLUDE_DIR) -I$(POGOSIM_INCLUDE_DIR)/sdk
+SDK_OBJECTS := $(patsubst %,$(BIN_DIR)/emu/%.o,$(foreach ending,.S .c,$(call names_in,$(POGOSIM_EMU_DIR),$(ending))))
+SDK_LINK := $(SDK_OBJECTS) -T $(POGOSIM_EMU_DIR)/memory.ld --specs=picolibc.specs -nostartfiles -lm
+else
+SDK_INCLUDES := -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR)
+SDK_LINK := -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot \
+    -Wl,--end-group
+endif
+
+SECTION_FLAGS := -ffunction-sections -fdata-sections
+ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto $(SECTION_FLAGS) \
+    -I. $(SDK_INCLUDES) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
 # C++ is less tested: the options of C except C-only ones, and without features that are too large for robots.
 CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-definition -Wmissing-prototypes,$(CFLAGS)) \
     -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
 CFLAGS += $(ROBOT_FLAGS)
 COMPILE_CPP = $(TRIPLE)-g++ -c $(CPP_FLAGS) $(ROBOT_FLAGS) $< -o $@
-LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -Wl,--gc-sections \
-    -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot -Wl,--end-group
+LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) \
+    -Wl,--gc-sections $(SDK_LINK)
 
 bin: $(FIRMWARE).bin
 	@$(TRIPLE)-size $(FIRMWARE).elf
 	@echo "Built $< for robots of category '$(ROBOT_CATEGORY)'"
 
+emu: $(FIRMWARE).elf
+	@$(TRIPLE)-size $<
+	@echo "Built $< for robots of category '$(ROBOT_CATEGORY)': pogosim run $< -c <conf>"
+
 $(FIRMWARE).bin: $(FIRMWARE).elf
 	$(TRIPLE)-objcopy -O binary $< $@
 
 # With a misspelt category, the robot would do nothing. The compiler removes calls for other categories.
-$(FIRMWARE).elf: $(OBJECTS) $(BIN_DIR)/.link
-	@! $(USES_LAYER) || $(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || { echo "This program has no pogobot_start() for robots of \
-category '$(ROBOT_CATEGORY)' (ROBOT_CATEGORY)" >&2; exit 1; }
+$(FIRMWARE).elf: $(OBJECTS) $(SDK_OBJECTS) $(BIN_DIR)/.link
+	@! $(USES_LAYER) || $(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || \
+	{ echo "This program has no pogobot_start() for robots of category '$(ROBOT_CATEGORY)' (ROBOT_CATEGORY)" >&2; exit 1; }
 	$(LINK) -o $@
 
 $(BIN_DIR)/%.c.o: %.c $(BIN_DIR)/.compile
@@ -55,6 +80,13 @@ $(BIN_DIR)/%.cpp.o: %.cpp $(BIN_DIR)/.compile
 	$(COMPILE_CPP)
 
 $(BIN_DIR)/pogosim/%.c.o: $(POGOSIM_INTERFACE_DIR)/%.c $(BIN_DIR)/.compile
+	$(compile)
+
+# Compiled apart from the program, so that nothing of them is inlined into it.
+$(BIN_DIR)/emu/%.o: CFLAGS := $(filter-out -flto,$(CFLAGS))
+$(BIN_DIR)/emu/%.c.o: $(POGOSIM_EMU_DIR)/%.c $(BIN_DIR)/.compile
+	$(compile)
+$(BIN_DIR)/emu/%.S.o: $(POGOSIM_EMU_DIR)/%.S $(BIN_DIR)/.compile
 	$(compile)
 
 define UTILS_RULE
@@ -68,11 +100,11 @@ $(foreach file,$(UTILS_SOURCES),$(eval $(call UTILS_RULE,$(file))))
 $(BIN_DIR)/.compile: COMMANDS = $(CC) $(CFLAGS) $(CPP_FLAGS)
 $(BIN_DIR)/.link: COMMANDS = $(LINK)
 $(BIN_DIR)/.compile $(BIN_DIR)/.link: FORCE
-	@mkdir -p $(@D) $(BIN_DIR)/pogosim
+	@mkdir -p $(@D) $(BIN_DIR)/pogosim $(BIN_DIR)/emu
 	@echo '$(subst ','\'',$(COMMANDS))' | cmp -s - $@ || echo '$(subst ','\'',$(COMMANDS))' >$@
 FORCE:
 
--include $(OBJECTS:.o=.d)
+-include $(OBJECTS:.o=.d) $(SDK_OBJECTS:.o=.d)
 
 # ---- connect: the SDK's serial terminal. In it, type serialboot to load the program.
 

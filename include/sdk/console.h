@@ -5,11 +5,13 @@
 
 #include "pogosim_hardware.h"
 
+#include <stdio.h>
+
 #include "uart.h"
 
 #define readchar() uart_read()
 #define readchar_nonblock() uart_read_nonblock()
 /// Prints a text, without the end of a line.
-#define putsnonl(text) ((void)pogosim_printf("%s", (text)))
+#define putsnonl(text) ((void)printf("%s", (text)))
 
 #endif

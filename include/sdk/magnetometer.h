@@ -5,7 +5,7 @@
 #define POGOSIM_SDK_MAGNETOMETER_H
 
 #ifndef POGOBASE_H
-#include "pogobot.h"
+#include <pogobot.h>  // of firmware, another one
 #endif
 #include <math.h>
 

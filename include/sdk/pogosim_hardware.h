@@ -1,5 +1,6 @@
 // Marks functions of the robot's hardware that are not simulated. A program may include their headers, and call them
-// between `#ifndef SIMULATOR` and `#endif`; elsewhere, a call does not compile.
+// between `#ifndef SIMULATOR` and `#endif`; elsewhere, a call does not compile. In firmware for the emulated processor
+// (`make emu`), which is also compiled what is between the two, the call compiles, and ends the run if it is reached.
 #ifndef POGOSIM_SDK_HARDWARE_H
 #define POGOSIM_SDK_HARDWARE_H
 
@@ -10,7 +11,9 @@
     POGO_NOT_SIMULATED_BECAUSE(                                                                                   \
         "it is a part of the robot's hardware that is not simulated: put the call between #ifndef SIMULATOR and " \
         "#endif (docs/porting.md)")
-#if defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)
+#ifdef REAL_ROBOT
+#define POGO_NOT_SIMULATED_BECAUSE(reason)
+#elif defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)
 #define POGO_NOT_SIMULATED_BECAUSE(reason) __attribute__((unavailable(reason)))
 #else
 #define POGO_NOT_SIMULATED_BECAUSE(reason) __attribute__((error(reason)))

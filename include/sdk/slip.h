@@ -32,14 +32,26 @@ typedef struct pogosim_slip_receive_state slip_receive_state_s;
 #define slip_send_message(...) POGO_SLIP_PICK(__VA_ARGS__, POGO_SLIP_DECLARED, POGO_SLIP_PLAIN, )(__VA_ARGS__)
 #define POGO_SLIP_PICK(descriptor, data, size, declared, chosen, ...) chosen
 #define POGO_SLIP_PLAIN(descriptor, data, size) POGO_SLIP_DECLARED(descriptor, data, size, -1)
+#ifdef REAL_ROBOT
+// In firmware for the emulated processor, always with four arguments.
+#define POGO_SLIP_DECLARED(descriptor, data, size, declared) \
+    (slip_send_message)((descriptor), (data), (size), (declared))
+#else
 #define POGO_SLIP_DECLARED(descriptor, data, size, declared) \
     ((slip_error_t)pogosim_send_packet((descriptor), (data), (size), (declared)))
+#endif
 #define slip_send_init(descriptor) ((void)(descriptor), SLIP_NO_ERROR)
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef REAL_ROBOT
+// `declared_length`: of the payload; -1: as its header says.
+slip_error_t(slip_send_message)(slip_send_descriptor_s const* descriptor, uint8_t const* data, uint32_t size,
+                                int32_t declared_length);
+#else
 int pogosim_send_packet(void const* descriptor, uint8_t const* data, uint32_t size, int64_t declared_length);
+#endif
 slip_error_t slip_receive_init(slip_receive_state_s* state) POGO_NOT_SIMULATED;
 slip_error_t slip_decode_received_byte(slip_receive_state_s* state, uint8_t byte) POGO_NOT_SIMULATED;
 void slip_dump_state(slip_receive_state_s* state, char* message) POGO_NOT_SIMULATED;

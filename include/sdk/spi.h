@@ -5,13 +5,15 @@
 
 #include "pogosim_hardware.h"
 
+#include <stdio.h>
+
 /// The stored directions of the motors, as of pogobot_motor_dir_mem_get() and pogobot_motor_dir_mem_set().
 #define getMotorDirMem(directions) pogobot_motor_dir_mem_get(directions)
 #define setMotorDirMem(directions) pogobot_motor_dir_mem_set(directions)
 /// The number of the chip: that of the simulated robot.
 #define getSerial() ((uint64_t)pogobot_helper_getid())
 #define spiUniqueID() getSerial()
-#define printSerial() ((void)pogosim_printf("%llu\n", (unsigned long long)getSerial()))
+#define printSerial() ((void)printf("%llu\n", (unsigned long long)getSerial()))
 
 #define POGO_NO_FLASH_CHIP                                                                 \
     POGO_NOT_SIMULATED_BECAUSE(                                                            \

@@ -9,12 +9,17 @@
 #define uart_read_nonblock() 0
 /// Waits for a character, which never comes.
 #define uart_read() pogosim_read_character()
+#ifndef REAL_ROBOT
 #define uart_write(character) ((void)pogosim_putchar(character))
+#endif
 #define uart_init() ((void)0)
 #define uart_sync() ((void)0)
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#ifdef REAL_ROBOT
+void uart_write(char c);
 #endif
 void msleep(int milliseconds);
 static inline __attribute__((unused)) char pogosim_read_character(void) {

@@ -10,7 +10,9 @@
 /// A point in time. Declare, embed, copy and pass it by address; its fields are private to the library.
 typedef struct time_reference_t {
     uint32_t hardware_value_at_time_origin;  ///< counter of the robot's clock
-    int64_t origin_us;                       ///< us since the robot's start; simulator only
+#ifdef SIMULATOR
+    int64_t origin_us;  ///< us since the robot's start; simulator only
+#endif
 } time_reference_t;
 
 #ifdef __cplusplus
