@@ -15,8 +15,8 @@ include $(POGO_SDK)/tools/variables.mak
 include $(POGO_SDK)/tools/common.mak
 endif
 
-BIN_DIR := $(BUILD_DIR)/$(TARGET)
-FIRMWARE := $(BIN_DIR)/firmware
+FIRMWARE_DIR := $(BUILD_DIR)/$(TARGET)
+FIRMWARE := $(FIRMWARE_DIR)/firmware
 
 .PHONY: bin emu connect
 
@@ -28,25 +28,25 @@ endif
 
 # $(call names_in,FOLDER,ENDING): names of the files in a folder, in whose own name blanks are escaped.
 names_in = $(sort $(filter %$(2),$(notdir $(wildcard $(1)/*$(2)))))
-PROGRAM_OBJECTS := $(SOURCES:%=$(BIN_DIR)/%.o)
-LAYER_OBJECTS := $(patsubst %,$(BIN_DIR)/pogosim/%.o,$(call names_in,$(POGOSIM_INTERFACE_DIR),.c))
-UTILS_OBJECTS := $(patsubst %,$(BIN_DIR)/utils/%.o,$(notdir $(UTILS_SOURCES)))
+PROGRAM_OBJECTS := $(SOURCES:%=$(FIRMWARE_DIR)/%.o)
+LAYER_OBJECTS := $(patsubst %,$(FIRMWARE_DIR)/pogosim/%.o,$(call names_in,$(POGOSIM_INTERFACE_DIR),.c))
+UTILS_OBJECTS := $(patsubst %,$(FIRMWARE_DIR)/utils/%.o,$(notdir $(UTILS_SOURCES)))
 OBJECTS := $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $(LAYER_OBJECTS)
 # Whether the program uses the layer: one with pogobot.h alone does not, and may have variables of the same names.
 USES_LAYER = grep -q 'pogobase\.h' $(PROGRAM_OBJECTS:.o=.d)
 
 ifeq ($(TARGET),emu)
 SDK_INCLUDES := -I$(POGOSIM_EMU_DIR) -I$(POGOSIM_INCLUDE_DIR) -I$(POGOSIM_INCLUDE_DIR)/sdk
-SDK_OBJECTS := $(patsubst %,$(BIN_DIR)/emu/%.o,$(foreach ending,.S .c,$(call names_in,$(POGOSIM_EMU_DIR),$(ending))))
-SDK_LINK := $(SDK_OBJECTS) -T $(POGOSIM_EMU_DIR)/memory.ld --specs=picolibc.specs -nostartfiles -lm
+SDK_OBJECTS := $(patsubst %,$(FIRMWARE_DIR)/emu/%.o,$(foreach ending,.S .c,$(call names_in,$(POGOSIM_EMU_DIR),$(ending))))
+LINKER_SCRIPT := $(POGOSIM_EMU_DIR)/memory.ld
+SDK_LINK := $(SDK_OBJECTS) -T $(LINKER_SCRIPT) --specs=picolibc.specs -nostartfiles -lm
 else
 SDK_INCLUDES := -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR)
 SDK_LINK := -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot \
     -Wl,--end-group
 endif
 
-SECTION_FLAGS := -ffunction-sections -fdata-sections
-ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto $(SECTION_FLAGS) \
+ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto -ffunction-sections -fdata-sections \
     -I. $(SDK_INCLUDES) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
 # C++ is less tested: the options of C except C-only ones, and without features that are too large for robots.
 CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-definition -Wmissing-prototypes,$(CFLAGS)) \
@@ -68,39 +68,43 @@ $(FIRMWARE).bin: $(FIRMWARE).elf
 	$(TRIPLE)-objcopy -O binary $< $@
 
 # With a misspelt category, the robot would do nothing. The compiler removes calls for other categories.
-$(FIRMWARE).elf: $(OBJECTS) $(SDK_OBJECTS) $(BIN_DIR)/.link
+$(FIRMWARE).elf: $(OBJECTS) $(SDK_OBJECTS) $(LINKER_SCRIPT) $(FIRMWARE_DIR)/.link
 	@! $(USES_LAYER) || $(TRIPLE)-gcc-nm $(OBJECTS) | grep -q ' U _pogobot_start$$' || \
 	{ echo "This program has no pogobot_start() for robots of category '$(ROBOT_CATEGORY)' (ROBOT_CATEGORY)" >&2; exit 1; }
 	$(LINK) -o $@
 
-$(BIN_DIR)/%.c.o: %.c $(BIN_DIR)/.compile
+$(FIRMWARE_DIR)/%.c.o: %.c $(FIRMWARE_DIR)/.compile
 	$(compile)
 
-$(BIN_DIR)/%.cpp.o: %.cpp $(BIN_DIR)/.compile
+$(FIRMWARE_DIR)/%.cpp.o: %.cpp $(FIRMWARE_DIR)/.compile
 	$(COMPILE_CPP)
 
-$(BIN_DIR)/pogosim/%.c.o: $(POGOSIM_INTERFACE_DIR)/%.c $(BIN_DIR)/.compile
-	$(compile)
+# Pogosim's folder may have blanks in its name, which the SDK's macro does not expect.
+BLANK := $() $()
+COMPILE_OURS = $(subst $<,$(subst $(BLANK),\ ,$<),$(compile))
+
+$(FIRMWARE_DIR)/pogosim/%.c.o: $(POGOSIM_INTERFACE_DIR)/%.c $(FIRMWARE_DIR)/.compile
+	$(COMPILE_OURS)
 
 # Compiled apart from the program, so that nothing of them is inlined into it.
-$(BIN_DIR)/emu/%.o: CFLAGS := $(filter-out -flto,$(CFLAGS))
-$(BIN_DIR)/emu/%.c.o: $(POGOSIM_EMU_DIR)/%.c $(BIN_DIR)/.compile
-	$(compile)
-$(BIN_DIR)/emu/%.S.o: $(POGOSIM_EMU_DIR)/%.S $(BIN_DIR)/.compile
-	$(compile)
+$(FIRMWARE_DIR)/emu/%.o: CFLAGS := $(filter-out -flto,$(CFLAGS))
+$(FIRMWARE_DIR)/emu/%.c.o: $(POGOSIM_EMU_DIR)/%.c $(FIRMWARE_DIR)/.compile
+	$(COMPILE_OURS)
+$(FIRMWARE_DIR)/emu/%.S.o: $(POGOSIM_EMU_DIR)/%.S $(FIRMWARE_DIR)/.compile
+	$(COMPILE_OURS)
 
 define UTILS_RULE
-$(BIN_DIR)/utils/$(notdir $(1)).o: $(1) $(BIN_DIR)/.compile
+$(FIRMWARE_DIR)/utils/$(notdir $(1)).o: $(1) $(FIRMWARE_DIR)/.compile
 	@mkdir -p $$(@D)
 	$$(compile)
 endef
 $(foreach file,$(UTILS_SOURCES),$(eval $(call UTILS_RULE,$(file))))
 
 # As in the Makefile: rebuilt when options, category, SDK or the list of sources change.
-$(BIN_DIR)/.compile: COMMANDS = $(CC) $(CFLAGS) $(CPP_FLAGS)
-$(BIN_DIR)/.link: COMMANDS = $(LINK)
-$(BIN_DIR)/.compile $(BIN_DIR)/.link: FORCE
-	@mkdir -p $(@D) $(BIN_DIR)/pogosim $(BIN_DIR)/emu
+$(FIRMWARE_DIR)/.compile: COMMANDS = $(CC) $(CFLAGS) $(CPP_FLAGS)
+$(FIRMWARE_DIR)/.link: COMMANDS = $(LINK)
+$(FIRMWARE_DIR)/.compile $(FIRMWARE_DIR)/.link: FORCE
+	@mkdir -p $(@D) $(FIRMWARE_DIR)/pogosim $(FIRMWARE_DIR)/emu
 	@echo '$(subst ','\'',$(COMMANDS))' | cmp -s - $@ || echo '$(subst ','\'',$(COMMANDS))' >$@
 FORCE:
 

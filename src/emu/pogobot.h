@@ -1,7 +1,7 @@
 /// @file
 /// Pogolib for firmware that the simulator runs on an emulated processor (`make emu`): what pogobot.h of the robots'
-/// SDK is for robots. The declarations are those of simulated programs; there is no code behind them, since the simulator
-/// takes over at each call.
+/// SDK is for robots. The declarations are those of simulated programs; there is no code behind them, since the
+/// simulator takes over at each call.
 #ifndef POGOBOT_H
 #define POGOBOT_H
 

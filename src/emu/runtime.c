@@ -68,11 +68,3 @@ void operator_delete_array_sized(void* memory, size_t bytes) __asm__("_ZdaPvj");
 void operator_delete_array_sized(void* memory, size_t bytes) {
     (void)bytes, free(memory);
 }
-
-// ---- The end of abort(): the robot stays where it is.
-
-_Noreturn void _exit(int status) {
-    (void)status;
-    for (;;) {
-    }
-}

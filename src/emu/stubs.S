@@ -196,3 +196,6 @@
 
 // sdk/uart.h: not simulated
     weak_function uart_isr
+
+// The C library's end of a failed assert(): the run ends with its name.
+    weak_function abort

@@ -194,6 +194,8 @@ def test_installation_is_enough_for_firmware(sdk: Path, tmp_path: Path) -> None:
     project = copy_template(tmp_path / "swarm")
     made(project, "bin", f"POGO_SDK={sdk}", f"POGOSIM_DIR={tmp_path / 'installed'}")
     assert "user_step" in call(f"{TRIPLE}-objdump", "--dwarf=info", project / "build" / "bin" / "firmware.elf")
+    made(project, "emu", f"POGOSIM_DIR={tmp_path / 'installed'}")
+    assert (project / "build" / "emu" / "firmware.elf").exists()
 
 
 CATEGORIES = """#include "pogobase.h"

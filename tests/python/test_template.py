@@ -133,6 +133,8 @@ def test_installation_has_the_tool_and_the_files_for_robots(prefix: Path, tmp_pa
     assert re.search(r"^main.c:\d+:\d+: warning: 'n' in user_step\(\) \(4 bytes\)", result.errors, re.MULTILINE)
     installed = prefix / "share" / "pogosim"
     assert {path.name for path in (installed / "interface").iterdir()} == {"main_loop.c", "colormaps.c"}
+    emu = {"pogobot.h", "runtime.c", "start.S", "stubs.S", "memory.ld", "robot_tools.mk"}
+    assert {path.name for path in (installed / "emu").iterdir()} == emu
     files = {str(path.relative_to(installed / "template_prj")) for path in (installed / "template_prj").rglob("*.*")}
     assert files == {"main.c", "robot.mk", "README.md", ".gitignore", "conf/test.yaml"}
 

@@ -169,7 +169,7 @@ void pogobot_infrared_update(void);
 int pogobot_infrared_message_available(void);
 /// Drops all waiting messages.
 void pogobot_infrared_clear_message_queue(void);
-#ifdef SIMULATOR
+#ifndef REAL_ROBOT
 // See pogobot_infrared_recover_next_message.
 void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes);
 #else
@@ -199,7 +199,7 @@ void pogobot_infrared_ll_init(void);
 /// (restart: the program begins anew). The program receives these packets, too.
 /// @range returns 0 or 1
 int is_muted(void);
-#ifdef SIMULATOR
+#ifndef REAL_ROBOT
 /// What is_muted() tells, as a variable: not 0 mutes the robot.
 #define _master_mute (*pogosim_master_mute())
 uint8_t* pogosim_master_mute(void);
@@ -210,14 +210,14 @@ extern uint8_t _master_mute;
 /// Clears interrupt flags of a real robot; does nothing in the simulator.
 void IR_reset_interrupt_flags(void);
 
-#ifdef SIMULATOR
+#ifndef REAL_ROBOT
 // What slip.h sends with. `declared_length`: of the payload; -1: as its header says.
 int pogosim_send_packet(void const* descriptor, uint8_t const* data, uint32_t size, int64_t declared_length);
 #endif
 
 POGO_END_API
 
-#ifdef SIMULATOR
+#ifndef REAL_ROBOT
 /// Removes the oldest message from the queue; bytes beyond its payload are zero. If no message is waiting, warns once
 /// and leaves the argument unchanged.
 static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message) {
@@ -228,7 +228,7 @@ static POGO_INLINE void pogobot_infrared_recover_next_message(message_t* message
 // Records in the program what a call sends, for pogosim-shared-state: a constant with the text of its arguments, in the
 // scope in which that text is valid. A call begins with the name of its function, so that a member of this name can be
 // called, too. (Inside a macro, its own name is the function's.)
-#if defined(SIMULATOR) && !defined(POGOSIM_INSIDE)
+#if !defined(REAL_ROBOT) && !defined(POGOSIM_INSIDE)
 #ifdef __cplusplus
 #define POGO_NO_MESSAGE static_cast<uint8_t*>(nullptr)
 #define POGO_NO_DIRECTION ir_front

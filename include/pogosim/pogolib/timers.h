@@ -10,7 +10,7 @@
 /// A point in time. Declare, embed, copy and pass it by address; its fields are private to the library.
 typedef struct time_reference_t {
     uint32_t hardware_value_at_time_origin;  ///< counter of the robot's clock
-#ifdef SIMULATOR
+#ifndef REAL_ROBOT
     int64_t origin_us;  ///< us since the robot's start; simulator only
 #endif
 } time_reference_t;
@@ -50,7 +50,11 @@ void msleep(int milliseconds);
 
 /// The same in microseconds. Declared as in <unistd.h>, which may be included, too; returns 0.
 /// @range taken as an int, as on the robot
+#ifdef REAL_ROBOT
+int usleep(unsigned long microseconds);  // as in picolibc
+#else
 int usleep(unsigned microseconds);
+#endif
 /// The same in seconds. Declared as in <unistd.h>, which may be included, too; returns 0.
 /// @range taken as an int, as on the robot
 unsigned sleep(unsigned seconds);

@@ -16,7 +16,7 @@ from pogosim.lines import say
 FILES = ("main.c", "conf/test.yaml", "Makefile", "robot.mk", "README.md", ".gitignore")
 LINK = "pogosim"
 # Names with another meaning in the Makefile or the folder.
-TAKEN = {"all", "sim", "bin", "connect", "clean", "build", "conf", LINK}
+TAKEN = {"all", "sim", "bin", "emu", "connect", "clean", "build", "conf", LINK}
 FILES_OF_MAKE = {"makefile", "gnumakefile", "robot.mk", "readme.md"}
 
 
