@@ -1,9 +1,9 @@
-# The firmware of a robot, for the Makefile's bin, emu and connect: all files of the project and Pogosim's interface layer,
-# compiled and linked according to the Pogobot SDK.
+# The firmware of a robot, for the Makefile's bin, emu and connect: all files of the project and Pogosim's interface
+# layer, compiled and linked according to the Pogobot SDK.
 #
-# The SDK's tools/variables.mak and tools/common.mak define the compiler and its options (TRIPLE, CC, CFLAGS and the macro
-# `compile`) and the robot's addresses (ROM_BASE). For emu, Pogosim's robot_tools.mk does, and what its folder has besides
-# takes the place of the SDK's headers, linker script and libraries.
+# The SDK's tools/variables.mak and tools/common.mak define the compiler and its options (TRIPLE, CC, CFLAGS and the
+# macro `compile`) and the robot's addresses (ROM_BASE). For emu, Pogosim's robot_tools.mk does, and other files beside
+# it take the place of the SDK's headers, linker script and libraries.
 ifeq ($(MAKECMDGOALS),emu)
 TARGET := emu
 # Names of files, in which make takes blanks for the ends of names.
@@ -37,20 +37,21 @@ USES_LAYER = grep -q 'pogobase\.h' $(PROGRAM_OBJECTS:.o=.d)
 
 ifeq ($(TARGET),emu)
 SDK_INCLUDES := -I$(POGOSIM_EMU_DIR) -I$(POGOSIM_INCLUDE_DIR) -I$(POGOSIM_INCLUDE_DIR)/sdk
-SDK_OBJECTS := $(patsubst %,$(FIRMWARE_DIR)/emu/%.o,$(foreach ending,.S .c,$(call names_in,$(POGOSIM_EMU_DIR),$(ending))))
+SDK_SOURCES := $(foreach ending,.S .c,$(call names_in,$(POGOSIM_EMU_DIR),$(ending)))
+SDK_OBJECTS := $(SDK_SOURCES:%=$(FIRMWARE_DIR)/emu/%.o)
 LINKER_SCRIPT := $(POGOSIM_EMU_DIR)/memory.ld
 SDK_LINK := $(SDK_OBJECTS) -T $(LINKER_SCRIPT) --specs=picolibc.specs -nostartfiles -lm
 else
 SDK_INCLUDES := -I$(POGO_SDK)/includes -I$(POGOSIM_INCLUDE_DIR)
-SDK_LINK := -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -L$(POGO_SDK)/libs -Wl,--start-group -lcompiler_rt -lc -lpogobot \
-    -Wl,--end-group
+SDK_LINK := -T $(POGO_SDK)/tools/linker.ld -N -nostdlib -L$(POGO_SDK)/libs \
+    -Wl,--start-group -lcompiler_rt -lc -lpogobot -Wl,--end-group
 endif
 
 ROBOT_FLAGS := -DREAL_ROBOT -DROBOT_CATEGORY=$(ROBOT_CATEGORY) -flto -ffunction-sections -fdata-sections \
     -I. $(SDK_INCLUDES) $(addprefix -I,$(POGOUTILS_INCLUDE_DIR)) -MD -MP
 # C++ is less tested: the options of C except C-only ones, and without features that are too large for robots.
-CPP_FLAGS := $(filter-out -std=% -fexceptions -Wstrict-prototypes -Wold-style-definition -Wmissing-prototypes,$(CFLAGS)) \
-    -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
+CPP_FLAGS := $(filter-out -std=% -fexceptions \
+    -Wstrict-prototypes -Wold-style-definition -Wmissing-prototypes,$(CFLAGS)) -std=gnu++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics
 CFLAGS += $(ROBOT_FLAGS)
 COMPILE_CPP = $(TRIPLE)-g++ -c $(CPP_FLAGS) $(ROBOT_FLAGS) $< -o $@
 LINK = $(CC) $(CPUFLAGS) -Os -flto $(PROGRAM_OBJECTS) $(UTILS_OBJECTS) $$($(USES_LAYER) && echo $(LAYER_OBJECTS)) \

@@ -19,6 +19,7 @@ OF_SDK = sorted({path.parent for path in (PROGRAMS / "sdk").glob("*/main.c*")})
 # Registers are no part of the library: such a program does not link, see below.
 REGISTERS = {"10_registers"}
 SINGLE = [PROGRAMS / name for name in ("sample.c", "console.c", "waits.c", "endless.c", "magnetometer_sdk.c")]
+SINGLE.append(ROOT / "python" / "pogosim" / "calibration" / "protocol.c")
 # unimp: an instruction that no processor has.
 ILLEGAL = bytes.fromhex("731000c0")
 EXECUTABLE, RISC_V, LOADED = 2, 243, 1
