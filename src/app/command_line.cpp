@@ -51,6 +51,10 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->type_name("N")
         ->check(is_seed);
     app.add_flag("-P,--progress", options.progress_bar, "show a progress bar");
+    app.add_option("--firmware", options.firmware,
+                   "run this firmware (ELF file) on the processors of robots, in the place of the program")
+        ->type_name("FILE")
+        ->check(CLI::ExistingFile);
     app.add_option("--video", options.video, "make a film of the run (.mp4, .webm or .gif), with ffmpeg")
         ->type_name("FILE")
         ->check(is_not_empty);

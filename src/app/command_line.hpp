@@ -23,6 +23,7 @@ struct CommandLine {
     std::string picture;         // file of a picture of the start, with check_config; empty: none
     std::optional<std::uint32_t> seed;
     std::string video;                   // file of a film; empty: none
+    std::string firmware;                // that drives robots in the place of the program; empty: none does
     std::int64_t hash_period_steps = 0;  // 0: no hashes
     std::vector<std::string> overrides;  // --set, in order
 };

@@ -76,7 +76,8 @@ LoadOptions load_options(CommandLine const& options) {
     return {.overrides = options.overrides,
             .strict = options.strict,
             .strict_values = options.strict_config,
-            .thorough = options.check_config || options.strict_config};
+            .thorough = options.check_config || options.strict_config,
+            .firmware = options.firmware};
 }
 
 Scenario scenario_of(CommandLine const& options) {
@@ -156,7 +157,8 @@ void tell_of_idle_program(Scenario const& scenario) {
         return object.spec.robot && object.nb > 0 && needs_program(object.spec.robot->brain);
     });
     if (has_robots && is_idle) {
-        log().info("no category needs the program: all robots follow scripts (brain: {script: ...})");
+        log().info(
+            "no category needs the program: other brains drive all robots (brain: a firmware, or {script: ...})");
     }
 }
 
@@ -211,7 +213,9 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     if (restarted) {
         log().info("restarted with seed {}", restarted->seed);
     }
-    tell_of_idle_program(scenario);
+    if (program.main != nullptr) {
+        tell_of_idle_program(scenario);
+    }
     bool const window = scenario.view.gui && !options.no_gui;
     RunOptions run_options{.progress_bar = options.progress_bar,
                            .measure_stages = false,

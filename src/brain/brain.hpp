@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "process/crash_handler.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -41,6 +43,12 @@ public:
 
     /// After the last step.
     virtual bool stop() { return true; }
+
+    /// The highest rate of ticks that one of its robots asks for, 1/s; 0: none says.
+    virtual int highest_loop_hz() const { return 0; }
+
+    /// Why the last of these functions returned false.
+    virtual std::optional<UserFailure> failure() const { return std::nullopt; }
 
     /// Appends the brain's own state, which is not in the world: for hashes, and for restore(), which takes these bytes
     /// from the front of `bytes`. The variables of a program are not saved.

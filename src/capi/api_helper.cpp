@@ -7,6 +7,7 @@
 
 #include "device/battery.hpp"
 #include "device/chips.hpp"
+#include "device/random_seeds.hpp"
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
@@ -19,14 +20,9 @@ using pogosim::require_robot;
 
 namespace {
 
-/// The stream of srand(seed): the same numbers for the same seed on every robot, as on the real ones.
-pogosim::RandomStream stream_of_seed(unsigned seed) {
-    return {seed, 0x72616e64};
-}
-
 /// The stream for calls outside user code, from a library that calls rand().
 pogosim::RandomStream& outside_stream() {
-    static thread_local pogosim::RandomStream stream = stream_of_seed(1);
+    static thread_local pogosim::RandomStream stream = pogosim::stream_of_seed(1);
     return stream;
 }
 
@@ -37,11 +33,12 @@ pogosim::RandomStream& current_stream() {
 }  // namespace
 
 int pogosim_rand() {
-    return static_cast<int>(current_stream().bits() & static_cast<unsigned>(RAND_MAX));
+    static_assert(RAND_MAX == 0x7fffffff);
+    return pogosim::random_number(current_stream());
 }
 
 void pogosim_srand(unsigned seed) {
-    current_stream() = stream_of_seed(seed);
+    current_stream() = pogosim::stream_of_seed(seed);
     if (context.controller != nullptr) {
         context.controller->program.seed = seed;
     }
@@ -86,12 +83,7 @@ uint16_t pogobot_helper_getid() {
 
 int16_t pogobot_helper_getRandSeed() {
     require_robot(__func__);
-    pogosim::Controller& controller = *context.controller;
-    if (!controller.seed_taken) {
-        controller.seed_taken = true;
-        return controller.first_seed;
-    }
-    return static_cast<int16_t>(controller.seeds.bits());
+    return context.controller->seeds.next();
 }
 
 void pogobot_helper_print_version() {

@@ -24,7 +24,7 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::string_view kBrain = "program, host, or {script: FILE}";
+constexpr std::string_view kBrain = "program, host, {script: FILE}, or a firmware, such as robot.elf";
 constexpr std::string_view kScript = "the name of a file with a list `script`, or that list";
 constexpr std::string_view kMotors = "a list of three powers, right, left and back, from -1023 to 1023";
 constexpr std::string_view kLed = "a list of red, green and blue, from 0 to 255";
@@ -147,6 +147,53 @@ ScriptSpec read_script_file(Place const& place, Reading& reading, Node& values) 
     return read_entries({*list, "script"}, reading, values);
 }
 
+std::span<Key<FirmwareSpec> const> firmware_keys() {
+    using K = Key<FirmwareSpec>;
+    static std::array const keys{
+        K{"firmware", &FirmwareSpec::file, any(), "", "The ELF file, searched for like other files.",
+          /*required=*/true},
+        K{"random",
+          one_of(&FirmwareSpec::random, {{"own", FirmwareRandom::own}, {"simulator", FirmwareRandom::simulator}}),
+          any(), "",
+          "Whose rand() and srand() it calls. own: those of its C library, as on the robot. simulator: those of a "
+          "program in C, set by `seed`, to compare the two."},
+    };
+    return keys;
+}
+
+/// Finds the file of a firmware.
+void find_firmware(Place const& place, Reading& reading, FirmwareSpec& spec) {
+    FoundFile const found = search_file(reading.configuration, spec.file);
+    if (spec.file.empty() || found.path.empty()) {
+        fail_at(place, fmt::format("there is no file '{}'{}", shown(spec.file), found.searched));
+    }
+    reading.object_files.push_back({found.path, "the firmware"});
+    spec.file = found.path.string();
+}
+
+FirmwareSpec read_firmware_map(MapReader& robot, Node const& brain) {
+    FirmwareSpec spec;
+    MapReader reader(brain, robot.path_of("brain"), robot.reading());
+    reader.read(firmware_keys(), spec);
+    reader.finish();
+    find_firmware({*brain.find("firmware"), robot.path_of("brain") + ".firmware"}, robot.reading(), spec);
+    robot.set_value("brain", reader.values());
+    return spec;
+}
+
+/// What drives robots that need a program, where a firmware is in its place: it is one for robots, so walls and
+/// membranes do nothing.
+BrainSpec in_place_of_program(MapReader& robot, RobotModel const& model) {
+    if (model.sends_along_outline) {
+        return ScriptSpec();
+    }
+    Node value;
+    value.kind = Node::Kind::scalar;
+    value.scalar = robot.reading().firmware;
+    robot.set_value("brain", std::move(value));
+    return FirmwareSpec{.file = robot.reading().firmware};
+}
+
 ScriptSpec read_script(MapReader& robot, Node const& brain) {
     std::string const path = robot.path_of("brain");
     Node const* const script = brain.find("script");
@@ -184,8 +231,12 @@ std::span<Key<RobotSpec> const> brain_keys() {
     static std::array const keys{
         Key<RobotSpec>{"brain", Elsewhere{kBrain}, any(), "",
                        "What drives the robots. program: the program in C. host: the process that steps the run, such "
-                       "as Python, by arrays. script: a list of what they do at which times; see its own table. "
-                       "Default: program."},
+                       "as Python, by arrays. script: a list of what they do at which times; see its own table. The "
+                       "name of an ELF file, or {firmware: FILE}: the firmware of robots. Default: program."},
+        Key<RobotSpec>{"cpu_time", one_of(&RobotSpec::cpu_time, {{"off", CpuTime::off}, {"counted", CpuTime::counted}}),
+                       any(), "",
+                       "Whether the code of a firmware takes time. off: none. counted: as much as on the robot, by the "
+                       "cycles of its instructions and the times of its calls (`processor`)."},
     };
     return keys;
 }
@@ -193,10 +244,15 @@ std::span<Key<RobotSpec> const> brain_keys() {
 BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
     Node const* const node = robot.find("brain");
     if (node == nullptr || node->scalar == "program") {
-        return ProgramSpec();
+        return robot.reading().firmware.empty() ? ProgramSpec() : in_place_of_program(robot, model);
     }
     if (node->scalar == "host") {
         return HostSpec();
+    }
+    if (node->kind == Node::Kind::scalar && node->scalar.ends_with(".elf")) {
+        FirmwareSpec spec{.file = node->scalar};
+        find_firmware({*node, robot.path_of("brain")}, robot.reading(), spec);
+        return spec;
     }
     if (node->kind != Node::Kind::map) {
         bool const is_file = node->scalar.ends_with(".yaml") || node->scalar.ends_with(".yml");
@@ -206,9 +262,19 @@ BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
         fail_at({*node, robot.path_of("brain")},
                 fmt::format("expected {}, found {}{}", kBrain, found_text(*node), hint));
     }
+    if (node->find("firmware") != nullptr) {
+        return read_firmware_map(robot, *node);
+    }
     ScriptSpec script = read_script(robot, *node);
     check_leds(script, model, {*node, robot.path_of("brain")});
     return script;
+}
+
+std::vector<KeyDescription> firmware_map_keys() {
+    std::vector<KeyDescription> keys;
+    std::ranges::transform(firmware_keys(), std::back_inserter(keys),
+                           [](Key<FirmwareSpec> const& key) { return describe(key, FirmwareSpec()); });
+    return keys;
 }
 
 std::vector<KeyDescription> script_entry_keys() {

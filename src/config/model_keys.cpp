@@ -25,6 +25,8 @@ constexpr std::string_view kLeds = "a list of maps, such as [{place: centre}, {a
 constexpr std::string_view kSensors = "a list of maps, such as [{angle_deg: 180}]";
 constexpr std::string_view kMotors = "a map of motors, such as {left: {linear_mm_s: 50, angular_rad_s: 2}}, or {}";
 constexpr std::string_view kProcessor = "a map of keys, such as {clock_hz: 21000000, memory_bytes: 131072}";
+constexpr std::string_view kCycles = "a map of keys, such as {load: 3, multiply: 33}";
+constexpr std::string_view kCallTimes = "a map of keys, such as {imu_us: 150, message_byte_us: 10}";
 constexpr std::string_view kPlace = "rim, centre, or [x, y] from the centre (mm)";
 
 constexpr Range kDegrees = between(-360, 360);
@@ -108,20 +110,71 @@ std::span<Key<WrittenMotor> const> motor_keys() {
     return keys;
 }
 
-struct WrittenProcessor {
-    std::int64_t clock_hz = RobotModel().clock_hz;
-    std::int64_t memory_bytes = RobotModel().memory_bytes;
-};
-
-std::span<Key<WrittenProcessor> const> processor_keys() {
-    using K = Key<WrittenProcessor>;
+std::span<Key<ProcessorSpec> const> processor_keys() {
+    using K = Key<ProcessorSpec>;
     static std::array const keys{
-        K{"clock_hz", &WrittenProcessor::clock_hz, between(1, 4e9), "Hz",
-          "Clock rate. Native programs take no time, so it has no effect on them."},
-        K{"memory_bytes", &WrittenProcessor::memory_bytes, between(1024, 4e9), "bytes",
-          "Memory for variables, stack and what a program allocates; warnings say when it would not be enough."},
+        K{"clock_hz", &ProcessorSpec::clock_hz, between(1, 4e9), "Hz",
+          "Clock rate. Code takes no time unless `cpu_time` is counted."},
+        K{"memory_bytes", &ProcessorSpec::memory_bytes, between(1024, 4e9), "bytes",
+          "Memory of a firmware for program, variables, stack and what it allocates. Of a program in C, warnings say "
+          "when it would not be enough."},
+        K{"cycle_factor", &ProcessorSpec::cycle_factor, above(0).up_to(1000), "",
+          "By which all cycles are multiplied, to fit a measurement on a robot."},
+        K{"cycles", Elsewhere{kCycles}, any(), "", "How many cycles instructions take; see its table."},
+        K{"call_times", Elsewhere{kCallTimes}, any(), "", "How long functions of the library take; see its table."},
     };
     return keys;
+}
+
+std::span<Key<CycleCosts> const> cycle_keys() {
+    using K = Key<CycleCosts>;
+    constexpr Range most = between(1, 1000);
+    static std::array const keys{
+        K{"alu", &CycleCosts::alu, most, "cycles", "Addition, comparison, logic, lui, auipc, fence."},
+        K{"shift", &CycleCosts::shift, most, "cycles", "A shift by 0 bits or 1."},
+        K{"shift_further_bit", &CycleCosts::shift_further_bit, between(0, 1000), "cycles",
+          "Each further bit of a shift."},
+        K{"load", &CycleCosts::load, most, "cycles", ""},
+        K{"store", &CycleCosts::store, most, "cycles", ""},
+        K{"multiply", &CycleCosts::multiply, most, "cycles", ""},
+        K{"divide", &CycleCosts::divide, most, "cycles", ""},
+        K{"jump", &CycleCosts::jump, most, "cycles", "jal."},
+        K{"jump_register", &CycleCosts::jump_register, most, "cycles", "jalr, as at the end of a function."},
+        K{"branch_predicted_taken", &CycleCosts::branch_predicted_taken, most, "cycles",
+          "A branch backwards that is taken."},
+        K{"branch_predicted_not_taken", &CycleCosts::branch_predicted_not_taken, most, "cycles",
+          "A branch forwards that is not taken."},
+        K{"branch_mispredicted", &CycleCosts::branch_mispredicted, most, "cycles", "Any other branch."},
+    };
+    return keys;
+}
+
+std::span<Key<CallTimes> const> call_time_keys() {
+    using K = Key<CallTimes>;
+    constexpr Range most = between(0, 1e8);
+    static std::array const keys{
+        K{"call_us", &CallTimes::call_us, most, "us", "Any function that has no key here."},
+        K{"led_us", &CallTimes::led_us, most, "us", "Setting an LED."},
+        K{"motor_us", &CallTimes::motor_us, most, "us", "Setting a power or a direction of a motor."},
+        K{"light_sensor_us", &CallTimes::light_sensor_us, most, "us", "Reading a light sensor or the battery."},
+        K{"imu_us", &CallTimes::imu_us, most, "us", "Reading acceleration and angular velocity, or the temperature."},
+        K{"magnetometer_us", &CallTimes::magnetometer_us, most, "us", "Reading the magnetometer."},
+        K{"message_us", &CallTimes::message_us, most, "us", "Sending a message, besides its bytes."},
+        K{"message_byte_us", &CallTimes::message_byte_us, most, "us",
+          "Each byte of a message that is sent, header and checksum included."},
+        K{"receive_us", &CallTimes::receive_us, most, "us", "Taking a message out of the queue."},
+        K{"print_byte_us", &CallTimes::print_byte_us, most, "us", "Each character that is printed."},
+        K{"flash_read_us", &CallTimes::flash_read_us, most, "us", "Reading a page of flash memory."},
+        K{"flash_write_us", &CallTimes::flash_write_us, most, "us", "Writing a page of flash memory."},
+        K{"flash_erase_us", &CallTimes::flash_erase_us, most, "us", "Erasing flash memory."},
+    };
+    return keys;
+}
+
+void read_processor(MapReader& reader, ProcessorSpec& processor) {
+    reader.read(processor_keys(), processor);
+    reader.read_map("cycles", kCycles, [&](MapReader& map) { map.read(cycle_keys(), processor.cycles); });
+    reader.read_map("call_times", kCallTimes, [&](MapReader& map) { map.read(call_time_keys(), processor.calls); });
 }
 
 bool is_central(MapReader const& reader) {
@@ -328,10 +381,7 @@ void read_model(MapReader& reader, RobotSpec& robot) {
     reader.read(flash_keys(), flash);
     model.flash_pages = flash.pages.value_or(model.flash_pages);
     reader.collect([&] {
-        WrittenProcessor processor;
-        reader.read_map("processor", kProcessor, [&](MapReader& map) { map.read(processor_keys(), processor); });
-        model.clock_hz = static_cast<std::uint32_t>(processor.clock_hz);
-        model.memory_bytes = static_cast<std::uint32_t>(processor.memory_bytes);
+        reader.read_map("processor", kProcessor, [&](MapReader& map) { read_processor(map, model.processor); });
     });
 }
 
@@ -380,7 +430,11 @@ std::vector<ModelTable> model_tables() {
         {"faces.<number>", "An infrared face.", std::move(face)},
         {"leds.<number>, light_sensors.<number>", "An LED or a light sensor.", described(place_keys(), WrittenPart())},
         {"motors.<right, left or back>", "A motor.", described(motor_keys(), WrittenMotor())},
-        {"processor", "The processor of a robot.", described(processor_keys(), WrittenProcessor())}};
+        {"processor", "The processor of a robot.", described(processor_keys(), ProcessorSpec())},
+        {"processor.cycles", "How many clock cycles instructions take. Names are those of the RISC-V manual.",
+         described(cycle_keys(), CycleCosts())},
+        {"processor.call_times", "How long functions of the robot's library take.",
+         described(call_time_keys(), CallTimes())}};
 }
 
 }  // namespace pogosim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "base/problems.hpp"
@@ -20,6 +21,7 @@ struct Reading {
     bool thorough = false;  // values without effect are checked, and slips in words of options do not end the reading
     Problems problems{};
     std::filesystem::path configuration{};   // the file; others that it names are searched beside it, too
+    std::string firmware{};                  // that drives robots in the place of the program; empty: none does
     std::vector<ObjectFile> object_files{};  // that have been read
 };
 

@@ -50,6 +50,8 @@ std::vector<KeyGroup> configuration_reference() {
     groups.push_back(
         {"objects.<category>.brain.script.<number>", "", "What a script does at a time.", script_entry_keys()});
 
+    groups.push_back({"objects.<category>.brain", "", "A firmware.", firmware_map_keys()});
+
     for (ModelTable& table : model_tables()) {
         groups.push_back(
             {fmt::format("objects.<category>.{}", table.name), "", std::string(table.doc), std::move(table.keys)});

@@ -155,6 +155,7 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     Reading reading{
         .strict_keys = options.strict, .strict_values = options.strict_values, .thorough = options.thorough};
     reading.configuration = path;
+    reading.firmware = options.firmware;
     check_maps_of_tools(written, reading.problems);
     ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading),
                         .values = {}};

@@ -147,6 +147,7 @@ struct LoadOptions {
     bool strict = false;                   // unknown keys are errors
     bool strict_values = false;            // values that would be cut, or replaced by the default, are errors
     bool thorough = false;                 // for a check, see Reading
+    std::string firmware{};                // that drives robots in the place of the program; empty: none does
 };
 
 /// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each

@@ -12,6 +12,11 @@ namespace pogosim {
 /// From tick to tick at 60 Hz, in whole milliseconds, as the main loop of programs makes it without another request.
 inline constexpr std::int64_t kUsualTickUs = 16000;
 
+// Code that takes no time may wait for something in a loop. Beyond a number of calls that no program needs in one step,
+// each call takes the time that it takes on a robot.
+inline constexpr int kFreeCalls = 1000;      // of each tick, and after each sleep
+inline constexpr std::int64_t kCallUs = 10;  // of a processor with 21 MHz
+
 /// Time of the step.
 inline std::int64_t time_us(World const& world) {
     constexpr double us_per_s = 1e6;

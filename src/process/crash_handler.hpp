@@ -39,6 +39,7 @@ struct UserFailure {
     bool in_other_thread = false;  // in one that the program started
     bool too_long = false;         // it had not returned after user_code_timeout
     void const* place = nullptr;   // in the program's code, that was executed last; null: unknown
+    std::string where{};           // "user_step of robot #3"; empty: what this process ran last
 };
 
 struct CrashHandlerState;

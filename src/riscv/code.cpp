@@ -10,7 +10,7 @@ namespace pogosim {
 namespace {
 
 /// Cycles of an instruction: of a branch, if it is not taken; of a shift by a register, if it is by one bit.
-std::uint32_t least_cycles(Instruction const& instruction, CycleCosts const& costs) {
+int least_cycles(Instruction const& instruction, CycleCosts const& costs) {
     using enum Operation;
     switch (instruction.operation) {
         case jal:
@@ -37,8 +37,7 @@ std::uint32_t least_cycles(Instruction const& instruction, CycleCosts const& cos
         case slli:
         case srli:
         case srai:
-            return costs.shift +
-                   costs.shift_further_bit * static_cast<std::uint32_t>(std::max(1, instruction.immediate) - 1);
+            return costs.shift + costs.shift_further_bit * (std::max(1, instruction.immediate) - 1);
         case sll:
         case srl:
         case sra:
@@ -98,9 +97,9 @@ void set_other_cycles(std::uint32_t index, CycleCosts const& costs, Code& code) 
     } else if (is_shift_by_register(step.operation)) {
         step.other_cycles = costs.shift_further_bit;
     } else if (step.operation == Operation::jal || is_branch(step.operation)) {
-        std::uint32_t const cycles = step.operation == Operation::jal ? costs.jump
-                                     : step.immediate < 0             ? costs.branch_predicted_taken
-                                                                      : costs.branch_mispredicted;
+        auto const cycles = static_cast<std::uint32_t>(step.operation == Operation::jal ? costs.jump
+                                                       : step.immediate < 0             ? costs.branch_predicted_taken
+                                                                                        : costs.branch_mispredicted);
         std::uint32_t const target = index + static_cast<std::uint32_t>(step.immediate);
         step.other_cycles = static_cast<std::int32_t>(code.cycles_before[index] + cycles - code.cycles_before[target]);
     }
@@ -121,7 +120,7 @@ Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleC
                          .rs2 = read.rs2,
                          .immediate = read.immediate};
         place(code.steps[i], address + 4 * i, code);
-        code.cycles_before.push_back(code.cycles_before.back() + least_cycles(read, costs));
+        code.cycles_before.push_back(code.cycles_before.back() + static_cast<std::uint32_t>(least_cycles(read, costs)));
     }
     code.steps.back() = {.operation = Operation::jump_outside,
                          .immediate = static_cast<std::int32_t>(address + code.bytes())};
@@ -133,13 +132,18 @@ Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleC
     return code;
 }
 
-bool intercept(Code& code, std::uint32_t address) {
+bool intercept(Code& code, std::uint32_t address, std::int32_t number) {
     std::uint32_t const offset = address - code.address;
     if (offset % 4 != 0 || offset >= code.bytes()) {
         return false;
     }
     code.steps[offset / 4].operation = Operation::intercepted;
+    code.steps[offset / 4].immediate = number;
     return true;
+}
+
+std::int32_t intercepted_number(Code const& code, std::uint32_t address) {
+    return code.steps[(address - code.address) / 4].immediate;
 }
 
 }  // namespace pogosim

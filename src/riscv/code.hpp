@@ -20,7 +20,8 @@ struct Step {
     std::uint8_t rd = 0;  // of branch_outside: the operation of the branch
     std::uint8_t rs1 = 0;
     std::uint8_t rs2 = 0;
-    std::int32_t immediate = 0;       // of jump_outside and branch_outside: the address that is jumped to
+    std::int32_t immediate = 0;       // of jump_outside and branch_outside: the address that is jumped to; of
+                                      // intercepted: its number
     std::int32_t other_cycles = 0;    // see Code
     std::uint32_t cycles_to_end = 0;  // see Code
 };
@@ -51,7 +52,11 @@ struct Code {
 /// only if it gets there. A part of a word at the end is left out.
 Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleCosts const& costs = {});
 
-/// Makes robots stop before the instruction at an address, each time. False if no instruction is there.
-bool intercept(Code& code, std::uint32_t address);
+/// Makes robots stop before the instruction at an address, each time. intercepted_number() of that address is `number`
+/// then. False if no instruction is there.
+bool intercept(Code& code, std::uint32_t address, std::int32_t number = 0);
+
+/// The number of an address that is intercepted.
+std::int32_t intercepted_number(Code const& code, std::uint32_t address);
 
 }  // namespace pogosim

@@ -11,27 +11,27 @@
 // cache.
 #pragma once
 
-#include <cstdint>
-
 namespace pogosim {
 
 /// Cycles, at least 1 each but for shift_further_bit. "1 +" is the cycle that each instruction takes in a full
 /// pipeline.
 struct CycleCosts {
-    std::uint16_t alu = 1;                // addition, comparison, logic, lui, auipc, fence
-    std::uint16_t shift = 1;              // by 0 bits or 1
-    std::uint16_t shift_further_bit = 1;  // LightShifterPlugin: one cycle for each bit; may be 0
-    std::uint16_t load = 3;               // estimate: 1 + 1 for the Wishbone bus + 1 until the loaded value can be used
-    std::uint16_t store = 2;              // estimate: 1 + 1 for the Wishbone bus
-    std::uint16_t multiply = 33;          // MulDivIterativePlugin: 1 + 32
-    std::uint16_t divide = 34;            // MulDivIterativePlugin: 1 + 33
-    std::uint16_t jump = 2;               // jal, BranchPlugin: 1 + 1, as of a branch that is predicted as taken
-    std::uint16_t jump_register = 4;  // jalr, not predicted: 1 + 3, an estimate (README: 2 to 4, by the configuration)
+    int alu = 1;                // addition, comparison, logic, lui, auipc, fence
+    int shift = 1;              // by 0 bits or 1
+    int shift_further_bit = 1;  // LightShifterPlugin: one cycle for each bit; may be 0
+    int load = 3;               // estimate: 1 + 1 for the Wishbone bus + 1 until the loaded value can be used
+    int store = 2;              // estimate: 1 + 1 for the Wishbone bus
+    int multiply = 33;          // MulDivIterativePlugin: 1 + 32
+    int divide = 34;            // MulDivIterativePlugin: 1 + 33
+    int jump = 2;               // jal, BranchPlugin: 1 + 1, as of a branch that is predicted as taken
+    int jump_register = 4;      // jalr, not predicted: 1 + 3, an estimate (README: 2 to 4, by the configuration)
 
     // Branches backwards are predicted as taken, others as not taken.
-    std::uint16_t branch_predicted_taken = 2;      // BranchPlugin: 1 + 1
-    std::uint16_t branch_predicted_not_taken = 1;  // BranchPlugin: 1
-    std::uint16_t branch_mispredicted = 4;         // 1 + 3, an estimate, as jalr
+    int branch_predicted_taken = 2;      // BranchPlugin: 1 + 1
+    int branch_predicted_not_taken = 1;  // BranchPlugin: 1
+    int branch_mispredicted = 4;         // 1 + 3, an estimate, as jalr
+
+    friend bool operator==(CycleCosts const&, CycleCosts const&) = default;
 };
 
 }  // namespace pogosim

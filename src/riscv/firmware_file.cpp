@@ -57,6 +57,7 @@ public:
         check_header();
         Firmware firmware;
         firmware.image = std::make_shared<MemoryImage const>(image());
+        firmware.variables_end = end_of_variables();
         std::vector<Section> const sections = all_sections();
         auto const [begin, end] = range_of_code(sections);
         firmware.code = decode_code(begin, code(*firmware.image, begin, end), costs);
@@ -177,6 +178,16 @@ private:
             }
         }
         return image;
+    }
+
+    std::uint32_t end_of_variables() const {
+        std::uint32_t end = memory_.address;
+        for (Segment const& segment : all_segments()) {
+            if (segment.type == kLoaded && is_in_memory(segment.address, segment.memory_bytes)) {
+                end = std::max(end, segment.address + segment.memory_bytes);
+            }
+        }
+        return end;
     }
 
     void check_is_in_memory(std::uint32_t address, std::uint32_t size) const {

@@ -26,6 +26,7 @@ struct Firmware {
     std::shared_ptr<MemoryImage const> image;  // as it is when a robot starts
     Code code;                                 // of its executable sections
     std::uint32_t entry = 0;                   // where it starts
+    std::uint32_t variables_end = 0;           // in memory: what it does not reserve begins there
     std::vector<FirmwareSymbol> symbols;       // ascending by address
 
     /// Null: there is none. If several have the name, it is the first one.

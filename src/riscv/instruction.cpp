@@ -125,7 +125,9 @@ Instruction decode(std::uint32_t word) {
             break;
         case 0b1110011:
             if (funct3 != 0 && funct3 != kNoAccess) {
-                read = {csr, rd, rs1, 0, immediate_i(word)};
+                bool const writes = funct3 % 4 == 1 || rs1 != 0;
+                bool const is_read_only = bits(word, 30, 31) == 3;  // table 2.1 of the privileged architecture
+                read = {writes && is_read_only ? illegal : csr, rd, rs1, 0, immediate_i(word)};
             } else {
                 read.operation = word == 0x00000073   ? ecall
                                  : word == 0x00100073 ? ebreak

@@ -33,8 +33,23 @@ std::byte const* Memory::in_flash(std::uint32_t address, std::uint32_t bytes) co
     return offset % bytes == 0 && offset < flash_bytes_ ? image_->flash.data() + offset : nullptr;
 }
 
+std::uint32_t Memory::bytes_of_page(std::uint32_t page) const {
+    return std::min(kPageBytes, bytes_ - page * kPageBytes);
+}
+
+std::span<std::byte const> Memory::own_page(std::uint32_t page) const {
+    std::byte const* const bytes = own_pages_[page].get();
+    return {bytes, bytes == nullptr ? 0 : bytes_of_page(page)};
+}
+
+void Memory::write_page(std::uint32_t page, std::span<std::byte const>& bytes) {
+    std::byte* const own = own_pages_[page] ? own_pages_[page].get() : copy_page(page);
+    std::copy_n(bytes.data(), bytes_of_page(page), own);
+    bytes = bytes.subspan(bytes_of_page(page));
+}
+
 std::byte* Memory::copy_page(std::uint32_t page) {
-    std::size_t const bytes = std::min(kPageBytes, bytes_ - page * kPageBytes);
+    std::size_t const bytes = bytes_of_page(page);
     own_pages_[page] = std::make_unique<std::byte[]>(bytes);
     std::copy_n(pages_[page], bytes, own_pages_[page].get());
     pages_[page] = own_pages_[page].get();

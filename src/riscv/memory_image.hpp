@@ -69,8 +69,16 @@ public:
     /// How many pages are the robot's own.
     std::size_t copied_pages() const;
 
+    /// How many pages the RAM has, and the bytes of one that is the robot's own; of others, none.
+    std::uint32_t pages() const { return static_cast<std::uint32_t>(pages_.size()); }
+    std::span<std::byte const> own_page(std::uint32_t page) const;
+
+    /// Takes the bytes of a page, which becomes the robot's own, from the front of `bytes`.
+    void write_page(std::uint32_t page, std::span<std::byte const>& bytes);
+
 private:
     std::byte const* in_flash(std::uint32_t address, std::uint32_t bytes) const;
+    std::uint32_t bytes_of_page(std::uint32_t page) const;
     std::byte* copy_page(std::uint32_t page);
 
     using Page = std::unique_ptr<std::byte[]>;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/random.hpp"
+#include "device/random_seeds.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "robot/phase.hpp"
 
@@ -51,12 +52,6 @@ struct SendResults {
     std::uint64_t said = 0;
 };
 
-/// The stream of rand() with which a robot's program starts.
-inline RandomStream random_of_program(std::uint64_t seed, std::uint32_t robot) {
-    constexpr std::uint64_t first_stream = std::uint64_t{1} << 32U;
-    return {seed, first_stream + robot};
-}
-
 class Fiber;
 
 struct Controller {
@@ -74,10 +69,8 @@ struct Controller {
     std::byte* user_data = nullptr;
     LoopGlobals loop;
     SendResults send_results;
-    RandomStream random;          // rand() and srand() of the program
-    RandomStream seeds;           // getRandSeed(), from the second call on
-    std::int16_t first_seed = 0;  // its first answer, different on every robot
-    bool seed_taken = false;
+    RandomStream random;  // rand() and srand() of the program
+    RandomSeeds seeds;
     std::string printed;  // a line not yet complete
 };
 

@@ -48,9 +48,6 @@ namespace {
 constexpr std::size_t kUserDataAlignment = 64;  // a cache line; more than any C type asks for
 constexpr char const* kSystemCategory = "__system";
 
-// Ids of random streams for purposes other than the noise of one robot's body.
-constexpr std::uint64_t kSeedStreams = std::uint64_t{2} << 32U;
-
 /// Bytes from one robot's user data to the next one's.
 std::size_t stride_of(std::size_t user_data_bytes) {
     std::size_t const bytes = std::max<std::size_t>(user_data_bytes, 1);
@@ -85,13 +82,6 @@ LoopGlobals stored_globals() {
             .error_shown_at_ms = _error_code_initial_time,
             .global_timer = _global_timer,
             .loop_timer = timer_main_loop};
-}
-
-/// A bijection of 16 bits, so that the first seeds of up to 65536 robots differ.
-std::int16_t scatter_id(std::uint16_t id, std::uint64_t key) {
-    auto const odd_factor = static_cast<std::uint16_t>(key | 1U);
-    auto const offset = static_cast<std::uint16_t>(key >> 16U);
-    return static_cast<std::int16_t>(static_cast<std::uint16_t>(unsigned{id} * odd_factor + offset));
 }
 
 /// Like the C library, calls main() with arguments, whether it takes them or not. C leaves that undefined, and
@@ -207,15 +197,12 @@ void Controllers::set_for_all(BoundVariable const& bound, ParameterSource& sourc
 }
 
 void Controllers::draw_seeds(std::uint64_t seed) {
-    std::uint64_t const key = mix64(seed + 1);
     for (std::uint32_t i = 0; i < controllers_.size(); ++i) {
-        Controller& self = controllers_[i];
-        self.random = random_of_program(seed, i);
-        self.seeds = RandomStream(seed, kSeedStreams + i);
-        self.first_seed = scatter_id(id_on_air(world_.robots.id[i]), key);
+        controllers_[i].random = random_of_program(seed, i);
+        controllers_[i].seeds = random_seeds(seed, i, id_on_air(world_.robots.id[i]));
     }
     system_.random = random_of_program(seed, kNone);
-    system_.seeds = RandomStream(seed, kSeedStreams + kNone);
+    system_.seeds = random_seeds(seed, kNone, 0);
 }
 
 Controller& Controllers::controller(std::uint32_t robot) {

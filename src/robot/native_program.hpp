@@ -31,8 +31,7 @@ public:
     /// whatever can be read of it.
     void share_steps(bool shares_nothing);
 
-    /// Why the last of these functions returned false.
-    std::optional<UserFailure> const& failure() const { return failure_; }
+    std::optional<UserFailure> failure() const override { return failure_; }
 
 private:
     bool succeeds(std::optional<UserFailure> failure);

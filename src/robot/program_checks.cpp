@@ -61,7 +61,9 @@ std::size_t least_memory_bytes(World const& world) {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (Category const& category : world.categories) {
         bool const has_program = category.spec.robot && needs_program(category.spec.robot->brain);
-        least = has_program ? std::min<std::size_t>(least, category.spec.robot->model.memory_bytes) : least;
+        least = has_program
+                    ? std::min(least, static_cast<std::size_t>(category.spec.robot->model.processor.memory_bytes))
+                    : least;
     }
     return least;
 }

@@ -1,18 +1,16 @@
 // Programs that wait in the middle of a step: msleep(), or a loop until a message comes or some time has passed. They
 // return control to the simulator, and go on in the step of the simulation in which their robot's clock is reached.
 //
-// The code of a robot takes no simulated time, so a loop that waits would wait for ever. Beyond a number of calls that
-// no program needs in one step, each call takes the time that it takes on a robot.
+// The code of a robot takes no simulated time, so a loop that waits would wait for ever. Beyond kFreeCalls, each call
+// takes the time that it takes on a robot.
 #pragma once
 
 #include <cstdint>
 
+#include "device/clock.hpp"
 #include "robot/context.hpp"
 
 namespace pogosim {
-
-inline constexpr int kFreeCalls = 1000;      // of each tick, and after each sleep
-inline constexpr std::int64_t kCallUs = 10;  // of a processor with 21 MHz
 
 /// The robot sleeps until its clock shows this time; one that has passed counts as any other call.
 void sleep_until(std::int64_t clock_us);

@@ -16,7 +16,6 @@
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
-#include "brain/make_brains.hpp"
 #include "config/places.hpp"
 #include "device/clock.hpp"
 #include "device/switched_off.hpp"
@@ -26,6 +25,7 @@
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
 #include "sim/lamps_of.hpp"
+#include "sim/make_brains.hpp"
 #include "sim/progress_bar.hpp"
 #include "sim/window_driver.hpp"
 #include "sim/window_setup.hpp"
@@ -95,8 +95,8 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       flash_state_(scenario_, world_),
       lighting_(make_lighting(scenario_, world_)),
       chips_(world_),
-      brains_(make_brains(world_)),
       workers_(thread_count(scenario_, world_)),
+      brains_(make_brains(world_, firmware_services())),
       physics_(make_physics(scenario_, world_, workers_)),
       recorder_(scenario_, world_, controllers_, services_.data, seed_),
       pictures_(Pictures::make(scenario_, world_, lighting_, options_.film)),
@@ -367,7 +367,18 @@ std::optional<UserFailure> Simulation::start() {
 
 std::optional<UserFailure> Simulation::call_brains(bool (Brain::*part)()) {
     bool const all_go_on = std::ranges::all_of(brains_, [part](auto const& brain) { return (*brain.*part)(); });
-    return all_go_on ? std::nullopt : program_->failure();
+    if (all_go_on) {
+        return std::nullopt;
+    }
+    auto const failed = std::ranges::find_if(brains_, [](auto const& brain) { return brain->failure().has_value(); });
+    return failed == brains_.end() ? std::nullopt : (*failed)->failure();
+}
+
+FirmwareServices Simulation::firmware_services() {
+    return {.seed = seed_,
+            .timeout_s = scenario_.user_code_timeout_s,
+            .workers = &workers_,
+            .print = [this](std::uint32_t robot, std::string_view line) { services_.print_line(world_, robot, line); }};
 }
 
 HostBrain* Simulation::host_brain(std::string_view category) {
@@ -523,7 +534,10 @@ bool Simulation::finish() {
 }
 
 void Simulation::fit_time_step() {
-    int const hz = controllers_.highest_loop_hz();
+    int hz = controllers_.highest_loop_hz();
+    for (auto const& brain : brains_) {
+        hz = std::max(hz, brain->highest_loop_hz());
+    }
     if (skips_ticks(hz, world_.time_step_s)) {
         double const tick_s = seconds_between_ticks(hz);
         log().warn("time_step reduced from {} s to {} s, so that no ticks are skipped (main_loop_hz: {})",
@@ -535,9 +549,11 @@ void Simulation::fit_time_step() {
 
 void Simulation::report(UserFailure const& failure) const {
     std::string const source = place_in_source(controllers_.image(), failure.place);
+    std::string const place = !failure.where.empty()    ? failure.where
+                              : failure.in_other_thread ? "a thread that it started"
+                                                        : current_place();
     std::string const where =
-        fmt::format("{}, t = {:.4f} s{}", failure.in_other_thread ? "a thread that it started" : current_place(),
-                    world_.time_s(), source.empty() ? "" : ", " + source);
+        fmt::format("{}, t = {:.4f} s{}", place, world_.time_s(), source.empty() ? "" : ", " + source);
     if (failure.refused) {
         log().error("{} (called from {}){}", failure.what, where, note_of_files());
         return;
@@ -549,7 +565,8 @@ void Simulation::report(UserFailure const& failure) const {
     bool const failed = failure.code != ExitCode::done;  // else it called exit(0)
     // C++ compilers let a function without its return run on into the next one; only a real main() is excused.
     bool const may_lack_return = failure.code == ExitCode::user_program && !failure.in_other_thread &&
-                                 !failure.too_long && context.phase == Phase::main && !controllers_.image().is_for_sdk;
+                                 !failure.too_long && failure.where.empty() && context.phase == Phase::main &&
+                                 !controllers_.image().is_for_sdk;
     log().log(failed ? spdlog::level::err : spdlog::level::warn, "the user program {} in {}: {}{}{}",
               failed ? "failed" : "ended", where, failure.what,
               may_lack_return ? " (in C++, main() must end with 'return 0;')" : "", note_of_files());

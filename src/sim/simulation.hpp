@@ -16,6 +16,7 @@
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
 #include "device/step_chips.hpp"
+#include "firmware/firmware_brain.hpp"
 #include "light/lighting.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
@@ -202,6 +203,7 @@ private:
 
     std::optional<UserFailure> run_steps();
     std::optional<UserFailure> call_brains(bool (Brain::*part)());
+    FirmwareServices firmware_services();
     void fit_time_step();
     void open_window();
     void stay_open();
@@ -224,9 +226,9 @@ private:
     Lighting lighting_;
     IrChannel channel_;
     StepChips chips_;
+    WorkerPool workers_;
     std::vector<std::unique_ptr<Brain>> brains_;  // the program, which comes first, then others by their categories
     NativeProgram* program_ = nullptr;            // one of them
-    WorkerPool workers_;
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;
     Recorder recorder_;

@@ -96,7 +96,7 @@ void add_robot(Hash& hash, Controller const& controller, World const& world, std
     hash.add(devices.messages_sent[robot]);
     hash.add(devices.messages_received[robot]);
     hash.add(controller.random);
-    hash.add(controller.seeds);
+    hash.add(controller.seeds.later);
     hash.add(mailboxes.size(robot));
     for (std::span<std::byte const> const messages : mailboxes.waiting(robot)) {
         hash.add_bytes(messages);

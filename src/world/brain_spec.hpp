@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -37,7 +38,21 @@ struct ScriptSpec {
     friend bool operator==(ScriptSpec const&, ScriptSpec const&) = default;
 };
 
-using BrainSpec = std::variant<ProgramSpec, HostSpec, ScriptSpec>;
+/// Whose rand() and srand() a firmware calls.
+enum class FirmwareRandom : std::uint8_t {
+    own,       // those of its C library, as on the robot
+    simulator  // those of a program in C: each robot has a stream of its own, set by the seed of the run
+};
+
+/// `brain: FILE.elf`, or `brain: {firmware: FILE.elf}`: the machine code of a program, as the robots' compiler makes it.
+struct FirmwareSpec {
+    std::string file;
+    FirmwareRandom random = FirmwareRandom::own;
+
+    friend bool operator==(FirmwareSpec const&, FirmwareSpec const&) = default;
+};
+
+using BrainSpec = std::variant<ProgramSpec, HostSpec, ScriptSpec, FirmwareSpec>;
 
 /// Whether robots with this brain need a program.
 inline bool needs_program(BrainSpec const& brain) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/vec2.hpp"
+#include "world/processor_spec.hpp"
 
 namespace pogosim {
 
@@ -82,9 +83,8 @@ struct RobotModel {
     std::vector<Part> light_sensors = three_light_sensors();    // up to kPhotosensorCount
     std::vector<Drive> drives = two_wheels();                   // empty: motors are inert
     bool has_magnetometer = true;
-    std::uint32_t flash_pages = 5888;      // of 256 bytes
-    std::uint32_t clock_hz = 21'000'000;   // of its processor
-    std::uint32_t memory_bytes = 131'072;  // for variables, stack and what it allocates
+    std::uint32_t flash_pages = 5888;  // of 256 bytes
+    ProcessorSpec processor{};
 
     bool has_motors() const { return !drives.empty(); }
     /// Bit d: it has face d. An outline counts as all of them.

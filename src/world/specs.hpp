@@ -169,6 +169,7 @@ struct RobotSpec {
     SensorSpec sensors;
     std::optional<BatterySpec> battery{};  // absent: always full
     BrainSpec brain{};                     // what drives it
+    CpuTime cpu_time = CpuTime::off;       // whether its code takes time
 };
 
 /// A soft body: bodies along the outline of the shape, joined into a ring by springs.

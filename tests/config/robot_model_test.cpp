@@ -87,8 +87,8 @@ TEST(RobotModel, PartsAreRead) {
     EXPECT_EQ(model.leds, (std::vector<Part>{{.direction = {1, 0}, .place = {.radii = {}, .offset_mm = {1, 2}}}}));
     EXPECT_TRUE(model.light_sensors.empty());
     EXPECT_EQ(model.flash_pages, 16U);
-    EXPECT_EQ(model.clock_hz, 1'000'000U);
-    EXPECT_EQ(model.memory_bytes, 65'536U);
+    EXPECT_EQ(model.processor.clock_hz, 1'000'000);
+    EXPECT_EQ(model.processor.memory_bytes, 65'536);
     EXPECT_EQ(model.drives, two_wheels());  // as before
 }
 

@@ -17,6 +17,9 @@ TEST(RiscvInstruction, EveryEncodingOfTheManualIsReadWithItsFields) {
         bool const is_upper = encoding.format == 'U';
         bool const is_jump = encoding.format == 'B' || encoding.format == 'J';
         for (std::int32_t const immediate : {0, 1, 2, 30, -2, 1024, -2048}) {
+            if (encoding.operation == Operation::csr && immediate == -2) {
+                continue;  // a register that can only be read
+            }
             Fields const fields{31, 1, 17, is_upper ? immediate * 4096 : is_jump ? immediate / 2 * 2 : immediate};
             Instruction const read = decode(encode(encoding, fields));
             EXPECT_EQ(read.operation, encoding.operation);
@@ -52,8 +55,9 @@ TEST(RiscvInstruction, WordsOfAnAssemblerAreRead) {
 TEST(RiscvInstruction, WhatTheProcessorLacksIsIllegal) {
     for (std::uint32_t const word :
          {0x00000000U, 0xffffffffU, 0x00004501U /* c.li */, 0x00054573U /* no access of a register */,
-          0x100522afU /* lr.w */, 0x00052507U /* flw */, 0x00b57553U /* fadd.s */, 0x30200073U /* mret */,
-          0x00053503U /* ld */, 0x00b53023U /* sd */, 0x0255153bU /* a word of RV64 */, 0x02051513U /* slli by 32 */,
+          0xc0001073U /* unimp: csrw cycle */, 0xc0056573U /* csrsi cycle */, 0x100522afU /* lr.w */,
+          0x00052507U /* flw */, 0x00b57553U /* fadd.s */, 0x30200073U /* mret */, 0x00053503U /* ld */,
+          0x00b53023U /* sd */, 0x0255153bU /* a word of RV64 */, 0x02051513U /* slli by 32 */,
           0x40051513U /* slli with bit 30 */, 0x00200073U, 0x00008073U}) {
         EXPECT_EQ(decode(word), Instruction{}) << std::hex << word;
     }

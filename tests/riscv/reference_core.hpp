@@ -64,7 +64,8 @@ struct ReferenceCore {
             case 0x0f:
                 return (kind == 0 || kind == 1 || kind == 5) && go_to(pc + 4);
             case 0x73:
-                return kind % 4 != 0 && result(rd, control_register(word / 1048576));
+                return kind % 4 != 0 && !(upper >= 96 && (kind % 4 == 1 || word / 32768 % 32 != 0)) &&
+                       result(rd, control_register(word / 1048576));
             default:
                 return false;  // ecall and ebreak stop, too
         }

@@ -1,4 +1,4 @@
-#include "brain/make_brains.hpp"
+#include "sim/make_brains.hpp"
 
 #include <fmt/format.h>
 
@@ -15,6 +15,29 @@
 namespace pogosim {
 
 namespace {
+
+/// Firmware that has been read: categories may have the same.
+class LoadedFirmware {
+public:
+    std::shared_ptr<FirmwareProgram const> of(RobotSpec const& robot) {
+        auto const& spec = std::get<FirmwareSpec>(robot.brain);
+        for (Loaded const& loaded : all_) {
+            if (loaded.spec == spec && loaded.processor == robot.model.processor) {
+                return loaded.program;
+            }
+        }
+        all_.push_back({spec, robot.model.processor, load_firmware(spec, robot.model.processor)});
+        return all_.back().program;
+    }
+
+private:
+    struct Loaded {
+        FirmwareSpec spec;
+        ProcessorSpec processor;
+        std::shared_ptr<FirmwareProgram const> program;
+    };
+    std::vector<Loaded> all_;
+};
 
 bool is_driven_by_host(Category const& category) {
     return category.spec.robot && std::holds_alternative<HostSpec>(category.spec.robot->brain);
@@ -38,8 +61,9 @@ std::unique_ptr<Brain> host_brain_of_entries(World& world, std::uint32_t first, 
 
 }  // namespace
 
-std::vector<std::unique_ptr<Brain>> make_brains(World& world) {
+std::vector<std::unique_ptr<Brain>> make_brains(World& world, FirmwareServices const& services) {
     std::vector<std::unique_ptr<Brain>> brains;
+    LoadedFirmware firmware;
     auto const count = static_cast<std::uint32_t>(world.categories.size());
     for (std::uint32_t next = 0; next < count;) {
         std::uint32_t const first = next++;
@@ -52,6 +76,9 @@ std::vector<std::unique_ptr<Brain>> make_brains(World& world) {
             brains.push_back(host_brain_of_entries(world, first, next));
         } else if (category.spec.robot && std::holds_alternative<ScriptSpec>(category.spec.robot->brain)) {
             brains.push_back(std::make_unique<ScriptBrain>(world, first));
+        } else if (category.spec.robot && std::holds_alternative<FirmwareSpec>(category.spec.robot->brain)) {
+            brains.push_back(
+                std::make_unique<FirmwareBrain>(world, first, firmware.of(*category.spec.robot), services));
         }
     }
     return brains;

@@ -1,0 +1,351 @@
+#include "firmware/firmware_brain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include "base/log.hpp"
+#include "device/clock.hpp"
+#include "device/motors.hpp"
+#include "device/sensing.hpp"
+#include "device/set_up.hpp"
+#include "firmware/saved_robot.hpp"
+#include "firmware/stop_text.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::uint32_t kLeastRobots = 8;  // of a part that one worker takes
+constexpr std::size_t kReturnAddress = 1;  // register ra
+constexpr std::size_t kStackPointer = 2;   // register sp
+
+/// An unsigned variable of a robot, at an address that the firmware says.
+template <std::uint32_t Bytes>
+std::uint32_t variable(Memory const& memory, std::uint32_t address) {
+    std::byte const* const place = memory.readable<Bytes>(address);
+    return place == nullptr ? 0 : read_little_endian<Bytes>(place);
+}
+
+/// A robot's firmware cannot go on.
+struct Failed : std::exception {
+    UserFailure failure;
+
+    explicit Failed(UserFailure its_failure) : failure(std::move(its_failure)) {}
+    char const* what() const noexcept override { return failure.what.c_str(); }
+};
+
+bool same_slip(Slip const& a, Slip const& b) {
+    return a.function == b.function && a.argument == b.argument && a.outcome == b.outcome;
+}
+
+}  // namespace
+
+FirmwareBrain::FirmwareBrain(World& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> program,
+                             FirmwareServices services)
+    : world_(world),
+      range_(robots_of(world, category)),
+      spec_(*world.categories[category].spec.robot),
+      program_(std::move(program)),
+      services_(std::move(services)) {
+    robots_.reserve(range_.size());
+    for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
+        robots_.push_back(new_robot(robot));
+    }
+}
+
+FirmwareRobot FirmwareBrain::new_robot(std::uint32_t robot) const {
+    FirmwareRobot self(program_->firmware.image);
+    self.core.pc = program_->firmware.entry;
+    MemoryImage const& image = *program_->firmware.image;
+    self.core.x[kStackPointer] = image.address + static_cast<std::uint32_t>(image.bytes.size());
+    self.seeds = random_seeds(services_.seed, robot, id_on_air(world_.robots.id[robot]));
+    self.random = random_of_program(services_.seed, robot);
+    return self;
+}
+
+bool FirmwareBrain::start() {
+    step_us_ = time_us(world_);
+    return run_all();
+}
+
+bool FirmwareBrain::run_step() {
+    step_us_ = time_us(world_);
+    return run_all();
+}
+
+bool FirmwareBrain::stop() {
+    for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
+        FirmwareRobot& self = robots_[robot - range_.first];
+        if (!self.printed.empty()) {
+            services_.print(robot, std::exchange(self.printed, {}));
+        }
+    }
+    return true;
+}
+
+int FirmwareBrain::highest_loop_hz() const {
+    int highest = 0;
+    for (FirmwareRobot const& self : robots_) {
+        if (program_->loop_hz) {
+            highest = std::max(highest, static_cast<int>(variable<1>(self.memory, *program_->loop_hz)));
+        }
+    }
+    return highest;
+}
+
+bool FirmwareBrain::run_all() {
+    WorkerPool& workers = *services_.workers;
+    parts_.resize(workers.range_count(range_.size(), kLeastRobots));
+    workers.run_ranges(range_.size(), kLeastRobots, [this](WorkRange range) { run_part(range); });
+    for (Part& part : parts_) {
+        join(part);
+        if (part.failure) {
+            failure_ = part.failure;
+            return false;
+        }
+    }
+    return true;
+}
+
+void FirmwareBrain::run_part(WorkRange range) {
+    Part& part = parts_[range.part];
+    part.out.clear();
+    part.failure.reset();
+    for (std::uint32_t i = range.first; i < range.last && !part.failure; ++i) {
+        std::uint32_t const robot = range_.first + i;
+        if (world_.devices.clock_us[robot] <= step_us_) {
+            run_robot(robot, part);
+        }
+    }
+}
+
+void FirmwareBrain::run_robot(std::uint32_t robot, Part& part) {
+    FirmwareRobot& self = robots_[robot - range_.first];
+    bool const restarts = self.is_restart_due;
+    if (restarts) {
+        self = new_robot(robot);
+        reset_devices(world_, robot, step_us_);
+    }
+    measure_at_tick(world_, robot);
+    if (!program_->loop_timer) {
+        self.went_on_us = world_.devices.clock_us[robot];
+    }
+    FirmwareCall call{.world = world_,
+                      .robot = robot,
+                      .self = self,
+                      .program = *program_,
+                      .out = part.out,
+                      .function = {},
+                      .times = spec_.model.processor.calls};
+    try {
+        go_on(call);
+        if (restarts && !self.is_starting && !is_ahead(call)) {
+            go_on(call);  // its first tick
+        }
+    } catch (WrongAddress const& wrong) {
+        part.failure = failure_of(call, text_of(wrong));
+    } catch (Failed const& failed) {
+        part.failure = failed.failure;
+    }
+    if (program_->ticks) {
+        world_.devices.ticks[robot] = variable<4>(self.memory, *program_->ticks);
+    }
+    if (self.has_ended) {
+        world_.devices.clock_us[robot] = kIdle;
+    }
+    drive(world_, robot);
+}
+
+/// Whether a robot has to wait for the time of the run.
+bool FirmwareBrain::is_ahead(FirmwareCall const& call) const {
+    return call.clock_us() > step_us_;
+}
+
+/// Cycles that a robot may run before it has to be looked at.
+std::uint64_t FirmwareBrain::budget(FirmwareCall const& call, std::uint64_t waited_cycles) const {
+    FirmwareRobot const& self = call.self;
+    ProcessorSpec const& processor = spec_.model.processor;
+    if (spec_.cpu_time == CpuTime::counted && !self.is_starting) {
+        double const left_us = static_cast<double>(step_us_ + 1 - call.clock_us()) - self.rest_us;
+        return static_cast<std::uint64_t>(std::max(1.0, std::ceil(left_us / processor.us_of(1.0))));
+    }
+    if (services_.timeout_s == 0.0) {
+        return std::numeric_limits<std::uint64_t>::max() / 4;
+    }
+    double const most = services_.timeout_s * static_cast<double>(processor.clock_hz);
+    double const used = static_cast<double>(self.core.cycles - waited_cycles);
+    return static_cast<std::uint64_t>(std::max(0.0, most - used));
+}
+
+/// The clock of a robot whose code takes time goes on by that of its cycles, and of what its last call has taken.
+void FirmwareBrain::count_time(FirmwareCall& call) const {
+    FirmwareRobot& self = call.self;
+    if (spec_.cpu_time == CpuTime::counted) {
+        auto const cycles = static_cast<double>(self.core.cycles - self.timed_cycles);
+        self.rest_us += spec_.model.processor.us_of(cycles) + call.time_us;
+        double const whole_us = std::floor(self.rest_us);
+        call.clock_us() += static_cast<std::int64_t>(whole_us);
+        self.rest_us -= whole_us;
+    }
+    self.timed_cycles = self.core.cycles;
+    call.time_us = 0.0;
+}
+
+/// Runs a robot until it waits.
+void FirmwareBrain::go_on(FirmwareCall& call) const {
+    FirmwareRobot& self = call.self;
+    Code const& code = program_->firmware.code;
+    std::uint64_t const waited_cycles = self.core.cycles;
+    bool const is_timed = spec_.cpu_time == CpuTime::counted;
+    for (bool goes_on = true; goes_on;) {
+        Stop const stop = run(self.core, self.memory, code, budget(call, waited_cycles));
+        count_time(call);
+        if (stop.reason == StopReason::budget_used) {
+            if (!is_timed || self.is_starting) {
+                throw Failed(failure_of(
+                    call,
+                    fmt::format("it has run for {} s on the robot's processor without waiting", services_.timeout_s)));
+            }
+            goes_on = !is_ahead(call);
+        } else if (stop.reason == StopReason::intercepted) {
+            std::int32_t const number = intercepted_number(code, stop.pc);
+            self.has_ended = number == kEndlessLoop;
+            goes_on = number != kEndlessLoop && make_call(call, library_functions()[static_cast<std::size_t>(number)]);
+        } else if (stop.reason == StopReason::wait_for_interrupt) {
+            self.has_ended = true;
+            goes_on = false;
+        } else {
+            throw Failed(failure_of(call, text_of(stop, self)));
+        }
+    }
+}
+
+/// A tick of the main loop begins. False: it does so in another step.
+bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
+    FirmwareRobot& self = call.self;
+    bool const is_timed = spec_.cpu_time == CpuTime::counted;
+    if (self.is_starting) {
+        // pogobot_start() resets it, too, before user_init.
+        self.is_starting = ++self.timer_resets < 2;
+        return self.is_starting;
+    }
+    if (!is_timed && self.tick_step == world_.step) {
+        return false;  // its last one took no time
+    }
+    if (!is_timed && program_->loop_hz && variable<1>(self.memory, *program_->loop_hz) == 0) {
+        call.clock_us() = step_us_;  // without a sleep the clock follows the steps
+    }
+    self.tick_step = world_.step;
+    self.calls = 0;
+    self.went_on_us = call.clock_us();
+    return true;
+}
+
+/// Notes a call that may be in a loop that waits, where code takes no time. False: the robot waits before it.
+bool FirmwareBrain::note_call(FirmwareCall& call, LibraryFunction const& function) const {
+    FirmwareRobot& self = call.self;
+    bool const is_noted = function.noted != Noted::at_line_end || call.argument(0) == '\n';
+    if (spec_.cpu_time == CpuTime::counted || !is_noted || std::exchange(self.has_noted_call, false) ||
+        ++self.calls <= kFreeCalls) {
+        return true;
+    }
+    call.clock_us() += kCallUs;
+    self.has_noted_call = is_ahead(call) && !(self.is_starting && function.noted == Noted::as_clock);
+    return !self.has_noted_call;
+}
+
+/// Throws Failed if the stack has grown into the variables, above which it was in the beginning.
+void FirmwareBrain::check_stack(FirmwareCall& call) const {
+    FirmwareRobot& self = call.self;
+    std::uint32_t const end = program_->firmware.variables_end;
+    bool const is_above = self.core.x[kStackPointer] >= end;
+    if (!std::exchange(self.has_called, true)) {
+        self.is_stack_above = is_above;
+    }
+    if (self.is_stack_above && !is_above) {
+        throw Failed(failure_of(call, fmt::format("its stack has grown down to 0x{:08x}, into its variables, which end "
+                                                  "at 0x{:08x}",
+                                                  self.core.x[kStackPointer], end)));
+    }
+}
+
+/// False: the robot waits, before the call or after it.
+bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& function) const {
+    FirmwareRobot& self = call.self;
+    bool const is_of_loop = program_->loop_timer && call.argument(0) == *program_->loop_timer;
+    if ((is_ahead(call) && !self.is_starting) || !note_call(call, function) ||
+        (is_of_loop && function.use == StopwatchUse::resets && !begin_tick(call))) {
+        return false;
+    }
+    check_stack(call);
+    call.function = function.name;
+    CallOutcome const outcome = function.call(call);
+    if (outcome == CallOutcome::repeats) {
+        return self.is_starting && !self.is_restart_due;
+    }
+    call.time_us += static_cast<double>(call.times.*function.time);
+    self.core.pc = self.core.x[kReturnAddress];
+    count_time(call);
+    bool const ends_tick = std::exchange(self.ends_tick, is_of_loop && function.use == StopwatchUse::reads);
+    if (outcome == CallOutcome::sleeps) {
+        if (ends_tick || !program_->loop_timer) {
+            drift_clock(world_, call.robot, self.went_on_us);
+        }
+        // After the sleep of the main loop, the rest of the tick goes on; in user_init, all does.
+        return ends_tick || (self.is_starting && program_->loop_timer) || !is_ahead(call);
+    }
+    self.has_ended = outcome == CallOutcome::ends;
+    bool const is_timed = spec_.cpu_time == CpuTime::counted && !self.is_starting;
+    return !self.has_ended && !(is_timed && is_ahead(call));
+}
+
+void FirmwareBrain::join(Part& part) {
+    TransmissionQueue& air = world_.air;
+    std::size_t const offset = air.payloads.size();
+    for (Transmission transmission : part.out.air.transmissions) {
+        transmission.payload_offset += offset;
+        air.transmissions.push_back(transmission);
+    }
+    air.payloads.insert(air.payloads.end(), part.out.air.payloads.begin(), part.out.air.payloads.end());
+    for (FirmwareOutbox::Said const& said : part.out.said) {
+        if (said.slip.outcome.empty()) {
+            services_.print(said.robot, said.text);
+        } else if (std::ranges::none_of(warned_, [&](Slip const& slip) { return same_slip(slip, said.slip); })) {
+            warned_.push_back(said.slip);
+            log().warn("robot #{} of category '{}', tick {}, t = {:.4f} s: {}", world_.robots.id[said.robot],
+                       world_.categories[world_.robots.category[said.robot]].name, world_.devices.ticks[said.robot],
+                       world_.time_s(), said.text);
+        }
+    }
+}
+
+UserFailure FirmwareBrain::failure_of(FirmwareCall const& call, std::string what) const {
+    FirmwareRobot const& self = call.self;
+    std::uint32_t const ticks = program_->ticks ? variable<4>(self.memory, *program_->ticks) : 0;
+    return {
+        .what = std::move(what),
+        .where = fmt::format("{} of robot #{} of category '{}'{}", place_in_firmware(*program_, self.core.pc),
+                             world_.robots.id[call.robot], world_.categories[world_.robots.category[call.robot]].name,
+                             program_->ticks ? fmt::format(", tick {}", ticks) : "")};
+}
+
+void FirmwareBrain::save(std::vector<std::byte>& bytes) const {
+    for (FirmwareRobot const& self : robots_) {
+        save_robot(self, bytes);
+    }
+}
+
+void FirmwareBrain::restore(std::span<std::byte const>& bytes) {
+    for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
+        FirmwareRobot& self = robots_[robot - range_.first];
+        self = new_robot(robot);
+        restore_robot(self, bytes);
+    }
+}
+
+}  // namespace pogosim

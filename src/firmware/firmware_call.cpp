@@ -1,0 +1,36 @@
+#include "firmware/firmware_call.hpp"
+
+#include <array>
+#include <bit>
+
+namespace pogosim {
+
+void FirmwareCall::give_float(float result) const {
+    give(std::bit_cast<std::uint32_t>(result));
+}
+
+void FirmwareCall::read(std::uint32_t address, std::span<std::byte> bytes) const {
+    if (Memory::Copied const copied = self.memory.read(address, bytes); copied.fault != AccessFault::none) {
+        throw WrongAddress{function, copied.address};
+    }
+}
+
+void FirmwareCall::write(std::uint32_t address, std::span<std::byte const> bytes) const {
+    if (Memory::Copied const copied = self.memory.write(address, bytes); copied.fault != AccessFault::none) {
+        throw WrongAddress{function, copied.address};
+    }
+}
+
+std::uint32_t FirmwareCall::read_word(std::uint32_t address) const {
+    std::array<std::byte, 4> bytes{};
+    read(address, bytes);
+    return read_little_endian<4>(bytes.data());
+}
+
+void FirmwareCall::write_word(std::uint32_t address, std::uint32_t value) const {
+    std::array<std::byte, 4> bytes{};
+    write_little_endian<4>(bytes.data(), value);
+    write(address, bytes);
+}
+
+}  // namespace pogosim

@@ -1,0 +1,92 @@
+#include "firmware/firmware_program.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+#include "firmware/firmware_call.hpp"
+#include "firmware/source_line.hpp"
+
+namespace pogosim {
+
+namespace {
+
+std::vector<std::byte> bytes_of_file(std::string const& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::vector<char> const bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (stream.bad() || !stream.is_open()) {
+        throw ConfigError(fmt::format("{}: the firmware cannot be read", escaped(file)));
+    }
+    std::span const raw = std::as_bytes(std::span(bytes));
+    return {raw.begin(), raw.end()};
+}
+
+std::optional<std::uint32_t> variable_at(Firmware const& firmware, std::string_view name, std::uint32_t bytes) {
+    FirmwareSymbol const* const found = firmware.find(name);
+    return found != nullptr && !found->is_function && found->bytes == bytes ? std::optional(found->address)
+                                                                            : std::nullopt;
+}
+
+/// A jump to itself, where programs end.
+void intercept_endless_loops(Code& code) {
+    for (std::size_t i = 0; i < code.steps.size(); ++i) {
+        Step const& step = code.steps[i];
+        if (step.operation == Operation::jal && step.immediate == 0) {
+            intercept(code, code.address + static_cast<std::uint32_t>(4 * i), kEndlessLoop);
+        }
+    }
+}
+
+void intercept_library(Firmware& firmware, FirmwareRandom random) {
+    std::span const functions = library_functions();
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+        FirmwareSymbol const* const symbol = firmware.find(functions[i].name);
+        bool const is_wanted = !functions[i].is_random || random == FirmwareRandom::simulator;
+        if (symbol != nullptr && is_wanted) {
+            intercept(firmware.code, symbol->address, static_cast<std::int32_t>(i));
+        }
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<FirmwareProgram const> load_firmware(FirmwareSpec const& spec, ProcessorSpec const& processor) {
+    std::string const name = escaped(spec.file);
+    if (processor.memory_bytes > kFlashAddress) {
+        throw ConfigError(fmt::format("{}: processor.memory_bytes is {}, beyond 0x{:08x}, where the robot's flash is",
+                                      name, processor.memory_bytes, kFlashAddress));
+    }
+    auto program = std::make_shared<FirmwareProgram>();
+    program->file = spec.file;
+    program->bytes = bytes_of_file(spec.file);
+    Firmware& firmware = program->firmware;
+    firmware = read_firmware(name, program->bytes, {.bytes = static_cast<std::uint32_t>(processor.memory_bytes)},
+                             processor.cycles);
+    if (firmware.find("main") == nullptr) {
+        throw ConfigError(fmt::format("{}: has no function main(): expected the firmware of a robot", name));
+    }
+    intercept_endless_loops(firmware.code);
+    intercept_library(firmware, spec.random);
+    program->loop_timer = variable_at(firmware, "timer_main_loop", 4);
+    program->ticks = variable_at(firmware, "pogobot_ticks", 4);
+    program->loop_hz = variable_at(firmware, "main_loop_hz", 1);
+    program->send_percent = variable_at(firmware, "percent_msgs_sent_per_ticks", 1);
+    program->is_muted = variable_at(firmware, "_master_mute", 1);
+    return program;
+}
+
+std::string place_in_firmware(FirmwareProgram const& program, std::uint32_t address) {
+    FirmwareSymbol const* const function = program.firmware.function_at(address);
+    std::string const name = function == nullptr ? fmt::format("0x{:08x}", address) : function->name;
+    std::string const line = source_line(program.bytes, address);
+    return line.empty() ? name : fmt::format("{} ({})", name, line);
+}
+
+}  // namespace pogosim
