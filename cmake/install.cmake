@@ -46,6 +46,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/emu" DESTINATION "${CMAKE_INSTALL_D
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/template_prj" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
     FILES_MATCHING PATTERN "Makefile" PATTERN "*.mk" PATTERN "*.c" PATTERN "*.yaml" PATTERN "*.md" PATTERN ".gitignore"
     PATTERN "build" EXCLUDE PATTERN "frames" EXCLUDE)
+install(TARGETS pogosim_without_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 if(TARGET pogosim_shared_state)
     install(TARGETS pogosim_shared_state RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
@@ -66,7 +67,7 @@ install(FILES
 # for each of the two places. The installed ones are relative to themselves: the tree may be moved, and `cmake --install
 # --prefix` may choose the place late. Blanks in paths are escaped as pkg-config and shells want it.
 function(pogosim_build_settings folder)
-    foreach(place includedir libdir interfacedir emudir shared_state template)
+    foreach(place includedir libdir without_program interfacedir emudir shared_state template)
         string(REPLACE " " "\\ " ${place} "${${place}}")
     endforeach()
     configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
@@ -85,6 +86,7 @@ set(libdir "${prefix}${CMAKE_INSTALL_LIBDIR}")
 set(interfacedir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/interface")
 set(emudir "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/emu")
 set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
+set(without_program "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-without-program")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
 install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim-sdk.pc"
@@ -99,5 +101,6 @@ endif()
 set(interfacedir "${PROJECT_SOURCE_DIR}/src/interface")
 set(emudir "${PROJECT_SOURCE_DIR}/src/emu")
 set(shared_state "${PROJECT_BINARY_DIR}/tools/pogosim-shared-state")
+set(without_program "${PROJECT_BINARY_DIR}/src/pogosim-without-program")
 set(template "${PROJECT_SOURCE_DIR}/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}")

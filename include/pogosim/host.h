@@ -29,7 +29,8 @@ enum pogosim_status {
 };
 
 struct pogosim_run_options {
-    char const* program;          ///< shared object, as `make sim` makes beside the executable; NULL: none is needed
+    char const* program;          ///< shared object, as `make sim` makes beside the executable, or the ELF file of a
+                                  ///< firmware; NULL: none is needed
     char const* configuration;    ///< YAML file
     char const* const* settings;  ///< "key.path=value", as of --set
     size_t setting_count;

@@ -38,6 +38,7 @@ class Installation:
         library: Folder of the library.
         template: Folder of the project template.
         shared_state: The tool that finds variables shared by mistake; it may be missing.
+        without_program: What runs configurations that need no program, and firmware.
         compiler_flags: Flags to compile and link a program in one command, for the end of the command line.
     """
 
@@ -47,6 +48,7 @@ class Installation:
     library: Path
     template: Path
     shared_state: Path
+    without_program: Path
     compiler_flags: tuple[str, ...]
 
 
@@ -68,13 +70,14 @@ def installation_in(folder: Path) -> Installation | None:
         return None
     try:
         settings = read_settings(file)
-        library, template, shared_state = (
+        library, template, shared_state, without_program = (
             Path(os.path.normpath(settings[name][0]))
-            for name in ("POGOSIM_LIBRARY_DIR", "POGOSIM_TEMPLATE_DIR", "SHARED_STATE_TOOL")
+            for name in ("POGOSIM_LIBRARY_DIR", "POGOSIM_TEMPLATE_DIR", "SHARED_STATE_TOOL", "WITHOUT_PROGRAM_TOOL")
         )
         flags = (*settings["POGOSIM_CFLAGS"], *settings["POGOSIM_SDK_CFLAGS"], *settings["POGOSIM_LIBS"])
         original = file.with_name("pogosim-original.mk")
-        return Installation(folder, original, settings["POGOSIM_VERSION"][0], library, template, shared_state, flags)
+        version = settings["POGOSIM_VERSION"][0]
+        return Installation(folder, original, version, library, template, shared_state, without_program, flags)
     except (KeyError, IndexError, ValueError):
         raise InstallationError(f"{file} is of another version, or damaged: build that Pogosim again") from None
 

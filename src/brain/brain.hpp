@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "process/crash_handler.hpp"
+#include "process/variable_text.hpp"
+#include "world/data_table.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -44,6 +47,15 @@ public:
     /// After the last step.
     virtual bool stop() { return true; }
 
+    /// Adds its columns to those of the data file. Throws ConfigError.
+    virtual void declare_columns(std::vector<ColumnSpec>& /*columns*/) {}
+
+    /// Fills the cells of its columns in the row of a robot, if it drives that robot.
+    virtual void fill_row(std::uint32_t /*robot*/, std::span<CellValue> /*cells*/) const {}
+
+    /// What the user may want to see of a robot that it drives: the load of its processor, and variables.
+    virtual NamedTexts texts_of(std::uint32_t /*robot*/) const { return {}; }
+
     /// The highest rate of ticks that one of its robots asks for, 1/s; 0: none says.
     virtual int highest_loop_hz() const { return 0; }
 
@@ -55,5 +67,8 @@ public:
     virtual void save(std::vector<std::byte>& /*bytes*/) const {}
     virtual void restore(std::span<std::byte const>& /*bytes*/) {}
 };
+
+/// All of a run. A program in C comes first, then others by their categories.
+using Brains = std::vector<std::unique_ptr<Brain>>;
 
 }  // namespace pogosim

@@ -157,6 +157,9 @@ std::span<Key<FirmwareSpec> const> firmware_keys() {
           any(), "",
           "Whose rand() and srand() it calls. own: those of its C library, as on the robot. simulator: those of a "
           "program in C, set by `seed`, to compare the two."},
+        K{"columns", &FirmwareSpec::columns, any(), "",
+          "Variables that become columns of the data file, such as [opinion, mydata.age, 'neighbours[0].id']: numbers "
+          "and texts, by the debug information of the file."},
     };
     return keys;
 }

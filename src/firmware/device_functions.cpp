@@ -106,8 +106,8 @@ bool has_body(FirmwareCall const& call) {
 }
 
 CallOutcome get_light(FirmwareCall& call) {
-    call.give_signed(-1);
     std::uint8_t const sensor = call.byte(0);
+    call.give_signed(-1);
     if (sensor >= call.world.spec_of(call.robot).model.light_sensors.size()) {
         call.note_slip("sensor_number", "one of the light_sensors of this robot's model, from 0", "-1 is returned",
                        sensor);
@@ -185,8 +185,11 @@ CallOutcome get_field(FirmwareCall& call) {
             return CallOutcome::repeats;
         }
     }
+    if (*finds_data) {
+        return take_field(call);
+    }
     call.give(1);
-    return *finds_data ? take_field(call) : CallOutcome::returns;
+    return CallOutcome::returns;
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "device/clock.hpp"
 #include "device/motors.hpp"
@@ -86,6 +89,49 @@ bool FirmwareBrain::stop() {
         }
     }
     return true;
+}
+
+FirmwareVariables const& FirmwareBrain::variables() const {
+    if (!variables_) {
+        variables_.emplace(*program_);
+    }
+    return *variables_;
+}
+
+/// Several categories may have the same columns.
+void FirmwareBrain::declare_columns(std::vector<ColumnSpec>& columns) {
+    for (std::string const& name : std::get<FirmwareSpec>(spec_.brain).columns.value_or(std::vector<std::string>())) {
+        FirmwareVariable const variable = variables().find(name);
+        ColumnType const type = column_type_of(*variable.type);
+        auto const found = std::ranges::find(columns, name, &ColumnSpec::name);
+        if (found != columns.end() && found->type != type) {
+            throw ConfigError(fmt::format("{}: column '{}': another column of this name has another type",
+                                          escaped(program_->file), escaped(name)));
+        }
+        columns_.push_back({static_cast<std::size_t>(found - columns.begin()), variable});
+        if (found == columns.end()) {
+            columns.push_back({name, type});
+        }
+    }
+}
+
+void FirmwareBrain::fill_row(std::uint32_t robot, std::span<CellValue> cells) const {
+    if (robot < range_.first || robot >= range_.last) {
+        return;
+    }
+    for (Column const& column : columns_) {
+        cells[column.index] = value_of(column.variable, this->robot(robot).memory);
+    }
+}
+
+NamedTexts FirmwareBrain::texts_of(std::uint32_t robot) const {
+    if (robot < range_.first || robot >= range_.last) {
+        return {};
+    }
+    FirmwareRobot const& self = this->robot(robot);
+    NamedTexts texts{{"(cycles of the last tick)", fmt::format("{}", self.tick_cycles)}};
+    std::ranges::move(variables().texts(self.memory), std::back_inserter(texts));
+    return texts;
 }
 
 int FirmwareBrain::highest_loop_hz() const {
@@ -240,6 +286,8 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     if (!is_timed && program_->loop_hz && variable<1>(self.memory, *program_->loop_hz) == 0) {
         call.clock_us() = step_us_;  // without a sleep the clock follows the steps
     }
+    self.tick_cycles = self.core.cycles - self.tick_began_cycles;
+    self.tick_began_cycles = self.core.cycles;
     self.tick_step = world_.step;
     self.calls = 0;
     self.went_on_us = call.clock_us();

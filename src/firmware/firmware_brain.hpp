@@ -19,6 +19,7 @@
 #include "firmware/firmware_call.hpp"
 #include "firmware/firmware_program.hpp"
 #include "firmware/firmware_robot.hpp"
+#include "firmware/firmware_variables.hpp"
 
 namespace pogosim {
 
@@ -40,6 +41,9 @@ public:
     bool start() override;
     bool run_step() override;
     bool stop() override;
+    void declare_columns(std::vector<ColumnSpec>& columns) override;
+    void fill_row(std::uint32_t robot, std::span<CellValue> cells) const override;
+    NamedTexts texts_of(std::uint32_t robot) const override;
     int highest_loop_hz() const override;
     std::optional<UserFailure> failure() const override { return failure_; }
     void save(std::vector<std::byte>& bytes) const override;
@@ -68,6 +72,7 @@ private:
     void count_time(FirmwareCall& call) const;
     bool is_ahead(FirmwareCall const& call) const;
     void join(Part& part);
+    FirmwareVariables const& variables() const;
     UserFailure failure_of(FirmwareCall const& call, std::string what) const;
 
     World& world_;
@@ -78,7 +83,13 @@ private:
     std::vector<FirmwareRobot> robots_;
     std::vector<Part> parts_;
     std::vector<Slip> warned_;
-    std::int64_t step_us_ = 0;  // time of the step
+    struct Column {
+        std::size_t index;  // in the data file's columns of the user
+        FirmwareVariable variable;
+    };
+    std::vector<Column> columns_;
+    mutable std::optional<FirmwareVariables> variables_;  // from the first look at them on
+    std::int64_t step_us_ = 0;                            // time of the step
     std::optional<UserFailure> failure_;
 };
 

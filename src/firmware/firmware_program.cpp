@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
@@ -56,6 +58,16 @@ void intercept_library(Firmware& firmware, FirmwareRandom random) {
 }
 
 }  // namespace
+
+bool is_firmware_file(std::string const& file) {
+    constexpr std::string_view magic = "\177ELF";
+    constexpr std::size_t machine_at = 18;
+    constexpr char risc_v = '\xf3';
+    std::ifstream stream(file, std::ios::binary);
+    std::array<char, machine_at + 1> header{};
+    return stream.read(header.data(), header.size()) && std::string_view(header.data(), magic.size()) == magic &&
+           header[machine_at] == risc_v;
+}
 
 std::shared_ptr<FirmwareProgram const> load_firmware(FirmwareSpec const& spec, ProcessorSpec const& processor) {
     std::string const name = escaped(spec.file);

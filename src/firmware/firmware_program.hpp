@@ -34,6 +34,9 @@ struct FirmwareProgram {
     std::optional<std::uint32_t> is_muted{};      // _master_mute, of the library
 };
 
+/// Whether a file is one that load_firmware() would read or refuse for its contents: an ELF file for RISC-V.
+bool is_firmware_file(std::string const& file);
+
 /// Reads a firmware, and intercepts the functions of the library that it contains. Throws ConfigError, which names the
 /// file, for what read_firmware() refuses, and if there is no main().
 std::shared_ptr<FirmwareProgram const> load_firmware(FirmwareSpec const& spec, ProcessorSpec const& processor);

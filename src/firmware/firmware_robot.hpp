@@ -33,6 +33,9 @@ struct FirmwareRobot {
     bool is_stack_above = false;       // at its first call, its stack was above its variables
     bool has_called = false;
 
+    std::uint64_t tick_began_cycles = 0;  // cycles of the core when its last tick began
+    std::uint64_t tick_cycles = 0;        // of the tick before
+
     // Where time is counted.
     std::uint64_t timed_cycles = 0;  // cycles of the core for which its clock has gone on
     double rest_us = 0.0;            // less than a microsecond, for which it has not

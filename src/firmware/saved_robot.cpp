@@ -29,6 +29,8 @@ void visit_values(Robot& robot, Visit const& visit) {
     visit(robot.is_restart_due);
     visit(robot.is_stack_above);
     visit(robot.has_called);
+    visit(robot.tick_began_cycles);
+    visit(robot.tick_cycles);
     visit(robot.timed_cycles);
     visit(robot.rest_us);
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "config/scenario.hpp"
+#include "firmware/firmware_program.hpp"
 #include "robot/context.hpp"
 #include "sim/used_files.hpp"
 
@@ -24,7 +25,10 @@ void check_program_file(Scenario const& scenario, char const* program) {
 
 Scenario scenario_of(pogosim_run_options const& options) {
     std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
-    Scenario scenario = load_scenario(options.configuration, {.overrides = settings, .strict = options.strict != 0});
+    bool const is_firmware = options.program != nullptr && is_firmware_file(options.program);
+    Scenario scenario = load_scenario(
+        options.configuration,
+        {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""});
     if (options.seed >= 0) {
         scenario.seed = static_cast<std::uint32_t>(options.seed);
     }
@@ -56,7 +60,7 @@ pogosim_run::pogosim_run(pogosim_run_options const& options) {
     logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
     log_ = std::make_shared<Log>(logging);
     LogScope const scope(log_.get());
-    if (options.program != nullptr) {
+    if (options.program != nullptr && !is_firmware_file(options.program)) {
         program_.emplace(options.program);
     }
     RunOptions run_options;

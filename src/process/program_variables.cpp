@@ -8,10 +8,12 @@
 #endif
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "base/escaped.hpp"
 
@@ -212,17 +214,19 @@ std::optional<std::uintptr_t> address_of(Dwarf_Die& variable) {
 
 class Reader {
 public:
-    explicit Reader(ProgramImage const& image) : image_(image), pieces_(image.memory_of_robots()) {}
+    /// `user_data_bytes`: of USERDATA as simulated programs have it; 0: there is none.
+    Reader(std::function<bool(std::uintptr_t)> is_wanted, std::size_t user_data_bytes)
+        : is_wanted_(std::move(is_wanted)), user_data_bytes_(user_data_bytes) {}
 
-    ProgramVariables read() {
-        shared_state::DebugFile const file(image_.file.string());
+    ProgramVariables read(std::string const& path) {
+        shared_state::DebugFile const file(path);
         shared_state::for_each_unit(file.debug_info(), [&](Dwarf_Die& entry) {
             unit_ = name_of(entry);
             unit_ = unit_.substr(unit_.find_last_of('/') + 1);
             look_into(entry, "");
         });
         tell_apart();
-        if (read_.user_data == nullptr && (read_.own.empty() || image_.user_data_bytes > 0)) {
+        if (read_.user_data == nullptr && (read_.own.empty() || user_data_bytes_ > 0)) {
             read_.why_unknown = "compile the program with -g to see its variables";
         }
         return std::move(read_);
@@ -256,14 +260,13 @@ private:
 
     void add(Dwarf_Die& variable, std::string const& function) {
         std::string const name = name_of(variable);
-        if (name == "pogo_user_data_type" && image_.user_data_bytes > 0) {
+        if (name == "pogo_user_data_type" && user_data_bytes_ > 0) {
             add_user_data(variable);
             return;
         }
         auto const address = address_of(variable);
-        bool const is_own =
-            address && is_in_any(pieces_, reinterpret_cast<void const*>(image_.load_address + *address));
-        if (!is_own || name.empty() || name.starts_with("pogo_user_data_") || !seen_.emplace(*address, true).second) {
+        if (!address || !is_wanted_(*address) || name.empty() || name.starts_with("pogo_user_data_") ||
+            !seen_.emplace(*address, true).second) {
             return;
         }
         found_.push_back({{name, *address, type_of(variable, 0)}, function, unit_});
@@ -272,7 +275,7 @@ private:
     void add_user_data(Dwarf_Die& variable) {
         std::optional<Dwarf_Die> pointer = type_behind(variable);
         VariableTypePointer const type = pointer ? type_of(*pointer, 0) : nullptr;
-        if (type != nullptr && type->bytes == image_.user_data_bytes) {
+        if (type != nullptr && type->bytes == user_data_bytes_) {
             read_.user_data = type;
         }
     }
@@ -292,8 +295,8 @@ private:
         }
     }
 
-    ProgramImage const& image_;
-    std::vector<std::span<std::byte>> pieces_;
+    std::function<bool(std::uintptr_t)> is_wanted_;
+    std::size_t user_data_bytes_;
     ProgramVariables read_;
     std::vector<Found> found_;
     std::map<std::uintptr_t, bool> seen_;  // addresses
@@ -307,12 +310,23 @@ ProgramVariables variables_of(ProgramImage const& image) {
         return {.why_unknown =
                     "the program has been compiled again since this run began: restart it to see its variables"};
     }
-    return Reader(image).read();
+    auto const is_own = [&image, pieces = image.memory_of_robots()](std::uintptr_t address) {
+        return is_in_any(pieces, reinterpret_cast<void const*>(image.load_address + address));
+    };
+    return Reader(is_own, image.user_data_bytes).read(image.file.string());
+}
+
+ProgramVariables variables_in_file(std::string const& file, std::function<bool(std::uintptr_t)> is_wanted) {
+    return Reader(std::move(is_wanted), 0).read(file);
 }
 
 #else
 
 ProgramVariables variables_of(ProgramImage const& /*image*/) {
+    return {.why_unknown = "this Pogosim was built without libdw, which reads variables"};
+}
+
+ProgramVariables variables_in_file(std::string const& /*file*/, std::function<bool(std::uintptr_t)> /*is_wanted*/) {
     return {.why_unknown = "this Pogosim was built without libdw, which reads variables"};
 }
 

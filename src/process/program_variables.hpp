@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -60,5 +61,8 @@ struct ProgramVariables {
 
 /// Reads the variables from the file of a program; leaves out those whose debug information is not understood.
 ProgramVariables variables_of(ProgramImage const& image);
+
+/// The variables of a file, also of one for another processor, at addresses that are wanted.
+ProgramVariables variables_in_file(std::string const& file, std::function<bool(std::uintptr_t address)> is_wanted);
 
 }  // namespace pogosim

@@ -80,6 +80,9 @@ Inspection Inspector::inspect(std::uint32_t robot) {
 }
 
 void Inspector::add_variables(std::uint32_t robot, Inspection& inspection) {
+    for (auto const& brain : brains_) {
+        std::ranges::move(brain->texts_of(robot), std::back_inserter(inspection.variables));
+    }
     RobotMemory const* const memory = controllers_.own_memory();
     std::size_t const data_bytes = controllers_.user_data_bytes();
     if (memory == nullptr && data_bytes == 0) {

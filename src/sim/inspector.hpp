@@ -21,9 +21,10 @@ namespace pogosim {
 class Inspector {
 public:
     /// References outlive this. `gaps`: of the engine.
-    Inspector(World const& world, Controllers const& controllers, TouchGaps const& gaps)
+    Inspector(World const& world, Controllers const& controllers, Brains const& brains, TouchGaps const& gaps)
         : world_(world),
           controllers_(controllers),
+          brains_(brains),
           gaps_(gaps),
           recent_motion_(world),
           lines_(world.robots.size()),
@@ -46,6 +47,7 @@ private:
 
     World const& world_;
     Controllers const& controllers_;
+    Brains const& brains_;
     TouchGaps gaps_;
     RecentMotion recent_motion_;
     Visibility visibility_;

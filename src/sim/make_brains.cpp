@@ -61,8 +61,8 @@ std::unique_ptr<Brain> host_brain_of_entries(World& world, std::uint32_t first, 
 
 }  // namespace
 
-std::vector<std::unique_ptr<Brain>> make_brains(World& world, FirmwareServices const& services) {
-    std::vector<std::unique_ptr<Brain>> brains;
+Brains make_brains(World& world, FirmwareServices const& services) {
+    Brains brains;
     LoadedFirmware firmware;
     auto const count = static_cast<std::uint32_t>(world.categories.size());
     for (std::uint32_t next = 0; next < count;) {

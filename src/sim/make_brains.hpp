@@ -11,7 +11,7 @@
 namespace pogosim {
 
 /// The brains of all categories that need no program, in their order. Throws ConfigError, std::bad_alloc.
-std::vector<std::unique_ptr<Brain>> make_brains(World& world, FirmwareServices const& services);
+Brains make_brains(World& world, FirmwareServices const& services);
 
 /// Throws ConfigError if a category that has robots needs a program.
 void check_needs_no_program(World const& world);

@@ -63,11 +63,12 @@ bool has_subparts(Category const& category) {
 
 }  // namespace
 
-Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& controllers, DataExport const& data,
-                   std::uint32_t seed)
+Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& controllers, Brains const& brains,
+                   DataExport& data, std::uint32_t seed)
     : scenario_(scenario),
       world_(world),
       controllers_(controllers),
+      brains_(brains),
       export_(data),
       seed_(seed),
       category_is_recorded_(recorded_categories(scenario, world)),
@@ -90,6 +91,10 @@ std::optional<UserFailure> Recorder::open() {
     if (auto failure = call_user_code([this] { controllers_.declare_columns(); })) {
         return failure;
     }
+    for (auto const& brain : brains_) {
+        brain->declare_columns(export_.columns);
+    }
+    export_.was_set.resize(export_.columns.size(), true);
     make_data_file();
     is_opened_ = true;
     show(shown_);
@@ -190,6 +195,9 @@ void Recorder::add_to_table(std::uint32_t object) {
     } else if (!controllers_.export_row(robot, object, cells)) {
         table_.cells.resize(first_cell);
         return;
+    }
+    for (auto const& brain : brains_) {
+        brain->fill_row(robot, cells);
     }
     table_.object.push_back(object);
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "brain/brain.hpp"
 #include "config/scenario.hpp"
 #include "process/crash_handler.hpp"
 #include "record/data_file.hpp"
@@ -25,8 +26,8 @@ class Recorder {
 public:
     /// Locks the files, so that no other run writes them. All references outlive this. `data` is what user code
     /// declares and exports. Throws OutputError, and ConfigError for a name whose format is unknown.
-    Recorder(Scenario const& scenario, World const& world, Controllers& controllers, DataExport const& data,
-             std::uint32_t seed);
+    Recorder(Scenario const& scenario, World const& world, Controllers& controllers, Brains const& brains,
+             DataExport& data, std::uint32_t seed);
 
     /// Lets the program declare its columns and opens the files that are wanted. Throws OutputError.
     std::optional<UserFailure> open();
@@ -92,7 +93,8 @@ private:
     Scenario const& scenario_;
     World const& world_;
     Controllers& controllers_;
-    DataExport const& export_;
+    Brains const& brains_;
+    DataExport& export_;
     std::uint32_t seed_;
     std::vector<bool> category_is_recorded_;
     LockedFile reserved_;  // until there is a data file

@@ -98,7 +98,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       workers_(thread_count(scenario_, world_)),
       brains_(make_brains(world_, firmware_services())),
       physics_(make_physics(scenario_, world_, workers_)),
-      recorder_(scenario_, world_, controllers_, services_.data, seed_),
+      recorder_(scenario_, world_, controllers_, brains_, services_.data, seed_),
       pictures_(Pictures::make(scenario_, world_, lighting_, options_.film)),
       stages_(options_.measure_stages) {
     if (controllers_.image().main == nullptr) {
@@ -128,7 +128,7 @@ SnapshotTaker& Simulation::snapshots() {
 
 Inspector& Simulation::inspector() {
     if (!inspector_) {
-        inspector_ = std::make_unique<Inspector>(world_, controllers_, physics_->touch_gaps());
+        inspector_ = std::make_unique<Inspector>(world_, controllers_, brains_, physics_->touch_gaps());
         services_.printed_lines = &inspector_->lines();
         recorder_.show(&inspector_->rows());
     }

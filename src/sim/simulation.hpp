@@ -227,8 +227,8 @@ private:
     IrChannel channel_;
     StepChips chips_;
     WorkerPool workers_;
-    std::vector<std::unique_ptr<Brain>> brains_;  // the program, which comes first, then others by their categories
-    NativeProgram* program_ = nullptr;            // one of them
+    Brains brains_;
+    NativeProgram* program_ = nullptr;  // one of them
     std::unique_ptr<PhysicsEngine> physics_;
     SavedColumns saved_columns_;
     Recorder recorder_;

@@ -48,6 +48,7 @@ enum class FirmwareRandom : std::uint8_t {
 struct FirmwareSpec {
     std::string file;
     FirmwareRandom random = FirmwareRandom::own;
+    std::optional<std::vector<std::string>> columns{};  // variables that are columns of the data file
 
     friend bool operator==(FirmwareSpec const&, FirmwareSpec const&) = default;
 };

@@ -8,7 +8,8 @@ import struct
 from pathlib import Path
 
 import pytest
-from project import TEMPLATE, compiled, copy_template, made, make, sentence, write
+from firmwares import add_pogosim, project_of
+from project import compiled, copy_template, made, make, sentence, write
 from robot_sdk import CPU_FLAGS, TRIPLE, call, make_sdk, need
 from running import PROGRAMS, ROOT, Run
 
@@ -29,22 +30,6 @@ int main(void) {
     for (;;) { msleep(10); }
 }
 """
-
-
-def add_pogosim(folder: Path) -> Path:
-    """Give a project Pogosim's tree, which need not be built, as a link."""
-    (folder / "pogosim").mkdir()
-    (folder / "pogosim" / "include").symlink_to(ROOT / "include")
-    (folder / "pogosim" / "src").symlink_to(ROOT / "src")
-    return folder
-
-
-def project_of(folder: Path, *sources: Path) -> Path:
-    """Make a project of these C and C++ files and headers."""
-    folder.mkdir()
-    for file in (TEMPLATE / "Makefile", TEMPLATE / "robot.mk", *sources):
-        shutil.copy(file, folder)
-    return add_pogosim(folder)
 
 
 @pytest.fixture

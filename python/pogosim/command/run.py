@@ -1,4 +1,4 @@
-"""`pogosim run`: compiles a project or a source file, and runs it."""
+"""`pogosim run`: compiles a project or a source file, and runs it; also firmware, and what needs no program."""
 
 from __future__ import annotations
 
@@ -15,10 +15,12 @@ from typing import NamedTuple
 from pogosim.command.parser import Parser, complain, warn
 from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
+from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
 
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
-Without -c, a project is run with its conf/test.yaml. Paths are relative to the working folder."""
+Without -c, a project is run with its conf/test.yaml. Without PROJECT, it is the project in the working folder; where
+there is none, the configuration says what drives the robots (brain). Paths are relative to the working folder."""
 
 
 class RunError(ToolError):
@@ -104,9 +106,8 @@ def make_project(folder: Path, pogosim: Installation) -> Path:
     if not (folder / "Makefile").is_file():
         if folder == Path():  # perhaps none was meant
             raise RunError(
-                "no program is named, and this folder is not a project: it has no Makefile. Name a project, a .c file "
-                "or a program first (pogosim new NAME makes a project); a configuration that needs no program "
-                "(brain: host, or a script) runs in Python: pogosim.Simulation(None, CONFIG)"
+                "no program is named, and this folder is not a project: it has no Makefile. Name a project, a .c file, "
+                "a program or a firmware first (pogosim new NAME makes a project)"
             )
         raise RunError(f"{folder} is not a project: it has no Makefile (pogosim new NAME makes a project)")
     command = ["make", "--silent", "--no-print-directory", "-C", str(folder), "sim"]
@@ -136,8 +137,30 @@ def program_of(what: Path, pogosim: Installation) -> Path:
     if what.suffix in COMPILERS:
         return compile_file(what, pogosim)
     if not os.access(what, os.X_OK):
-        raise RunError(f"{what} is neither a folder, a .c or .cpp file, nor a program")
+        raise RunError(f"{what} is neither a folder, a .c or .cpp file, a firmware, nor a program")
     return what
+
+
+def command_of(what: Path | None, options: Sequence[str], pogosim: Installation) -> list[str]:
+    """Return the command that runs a project, a source file, a program or a firmware, made before if it has to be.
+
+    Args:
+        what: None is the project in the working folder or, where there is none, what the configuration says.
+        options: Options of the simulator.
+        pogosim: The simulator.
+
+    Raises:
+        RunError: There is none.
+    """
+    if what is not None and is_firmware(what):
+        return [str(pogosim.without_program), "--firmware", str(what), *options]
+    if what is None and not Path("Makefile").is_file() and has_configuration(options):
+        return [str(pogosim.without_program), *options]
+    folder = Path() if what is None else what
+    program = program_of(folder, pogosim)
+    configuration = folder / "conf" / "test.yaml"
+    chosen = [] if has_configuration(options) or not configuration.is_file() else ["-c", str(configuration)]
+    return [str(program), *chosen, *options]
 
 
 def has_configuration(options: Sequence[str]) -> bool:
@@ -152,29 +175,28 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
     parser = Parser(
         prog=prog,
         usage=f"{prog} [PROJECT] [OPTIONS OF THE SIMULATOR]",
-        description="Compiles a project or a source file, and runs it.",
+        description="Compiles a project or a source file, and runs it; or runs a firmware on emulated robots.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         add_help=False,
     )
-    parser.add_argument("project", metavar="PROJECT", help="folder of a project, .c or .cpp file, or program (.)")
+    parser.add_argument(
+        "project", metavar="PROJECT", help="folder of a project, .c or .cpp file, program (.), or firmware (.elf)"
+    )
     given = list(sys.argv[1:] if arguments is None else arguments)
-    what, options = (Path(given[0]), given[1:]) if given and not given[0].startswith("-") else (Path(), given)
     if given[:1] in (["-h"], ["--help"]):
         parser.print_help()
         return 0
+    what = Path(given.pop(0)) if given and not given[0].startswith("-") else None
     try:
-        program = program_of(what, find_installation())
+        command = command_of(what, given, find_installation())
     except ToolError as error:
         return complain(prog, error)
     except OSError as error:
-        return complain(prog, f"cannot build {what}: {error.strerror}")
-    configuration = what / "conf" / "test.yaml"
-    if not has_configuration(options) and configuration.is_file():
-        options = ["-c", str(configuration), *options]
+        return complain(prog, f"cannot build {what or Path()}: {error.strerror}")
     let_find_models(functools.partial(warn, prog))
     sys.stdout.flush()
     try:
-        os.execv(program, [str(program), *options])
+        os.execv(command[0], command)
     except OSError as error:
-        return complain(prog, f"cannot run {program}: {error.strerror}")
+        return complain(prog, f"cannot run {command[0]}: {error.strerror}")
