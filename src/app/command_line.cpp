@@ -55,6 +55,15 @@ void declare_options(CLI::App& app, CommandLine& options) {
                    "run this firmware (ELF file) on the processors of robots, in the place of the program")
         ->type_name("FILE")
         ->check(CLI::ExistingFile);
+    CLI::Option* const profile =
+        app.add_option("--profile", options.profile,
+                       "count where the cycles of the first robot's firmware go, for pogosim profile (.json)")
+            ->type_name("FILE")
+            ->check(is_not_empty);
+    app.add_option("--profile-robots", options.profile_robots, "how many robots are in the profile")
+        ->type_name("N")
+        ->check(CLI::Range(1U, 100'000U))
+        ->needs(profile);
     app.add_option("--video", options.video, "make a film of the run (.mp4, .webm or .gif), with ffmpeg")
         ->type_name("FILE")
         ->check(is_not_empty);

@@ -223,6 +223,8 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .conversions = conversions(options),
                            .hash_period_steps = options.hash_period_steps,
                            .film = options.video,
+                           .profile = options.profile,
+                           .profile_robots = options.profile_robots,
                            .window = window,
                            .close_at_end = options.close_at_end,
                            .program_name = options.program_name,

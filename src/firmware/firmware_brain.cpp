@@ -51,6 +51,7 @@ bool same_slip(Slip const& a, Slip const& b) {
 FirmwareBrain::FirmwareBrain(World& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> program,
                              FirmwareServices services)
     : world_(world),
+      category_(category),
       range_(robots_of(world, category)),
       spec_(*world.categories[category].spec.robot),
       program_(std::move(program)),
@@ -146,8 +147,9 @@ int FirmwareBrain::highest_loop_hz() const {
 
 bool FirmwareBrain::run_all() {
     WorkerPool& workers = *services_.workers;
-    parts_.resize(workers.range_count(range_.size(), kLeastRobots));
-    workers.run_ranges(range_.size(), kLeastRobots, [this](WorkRange range) { run_part(range); });
+    std::uint32_t const least = services_.observer != nullptr ? range_.size() : kLeastRobots;
+    parts_.resize(workers.range_count(range_.size(), least));
+    workers.run_ranges(range_.size(), least, [this](WorkRange range) { run_part(range); });
     for (Part& part : parts_) {
         join(part);
         if (part.failure) {
@@ -242,6 +244,20 @@ void FirmwareBrain::count_time(FirmwareCall& call) const {
     call.time_us = 0.0;
 }
 
+bool FirmwareBrain::is_observed(FirmwareCall const& call) const {
+    return services_.observer != nullptr && services_.observer->observes(call.robot);
+}
+
+Stop FirmwareBrain::run_core(FirmwareCall& call, std::uint64_t most_cycles) const {
+    FirmwareRobot& self = call.self;
+    Code const& code = program_->firmware.code;
+    if (!is_observed(call)) [[likely]] {
+        return run(self.core, self.memory, code, most_cycles);
+    }
+    double const clock_us = static_cast<double>(call.clock_us()) + self.rest_us;
+    return services_.observer->run(call.robot, self.core, self.memory, code, most_cycles, clock_us);
+}
+
 /// Runs a robot until it waits.
 void FirmwareBrain::go_on(FirmwareCall& call) const {
     FirmwareRobot& self = call.self;
@@ -249,7 +265,7 @@ void FirmwareBrain::go_on(FirmwareCall& call) const {
     std::uint64_t const waited_cycles = self.core.cycles;
     bool const is_timed = spec_.cpu_time == CpuTime::counted;
     for (bool goes_on = true; goes_on;) {
-        Stop const stop = run(self.core, self.memory, code, budget(call, waited_cycles));
+        Stop const stop = run_core(call, budget(call, waited_cycles));
         count_time(call);
         if (stop.reason == StopReason::budget_used) {
             if (!is_timed || self.is_starting) {
@@ -291,6 +307,12 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     self.tick_step = world_.step;
     self.calls = 0;
     self.went_on_us = call.clock_us();
+    if (is_observed(call)) {
+        constexpr int usual_hz = 60;
+        std::uint32_t const ticks = program_->ticks ? variable<4>(self.memory, *program_->ticks) : 0;
+        int const hz = program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
+        services_.observer->note_tick(call.robot, ticks, hz, static_cast<double>(call.clock_us()) + self.rest_us);
+    }
     return true;
 }
 
@@ -337,6 +359,9 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
         return self.is_starting && !self.is_restart_due;
     }
     call.time_us += static_cast<double>(call.times.*function.time);
+    if (is_observed(call)) {
+        services_.observer->note_call(call.robot, self.core.pc, call.time_us);
+    }
     self.core.pc = self.core.x[kReturnAddress];
     count_time(call);
     bool const ends_tick = std::exchange(self.ends_tick, is_of_loop && function.use == StopwatchUse::reads);

@@ -20,6 +20,7 @@
 #include "firmware/firmware_program.hpp"
 #include "firmware/firmware_robot.hpp"
 #include "firmware/firmware_variables.hpp"
+#include "firmware/observer.hpp"
 
 namespace pogosim {
 
@@ -28,6 +29,7 @@ struct FirmwareServices {
     std::uint64_t seed = 0;   // of the run
     double timeout_s = 10.0;  // processor time of a robot after which code that never waits ends the run; 0: none
     WorkerPool* workers = nullptr;
+    FirmwareObserver* observer = nullptr;  // null: none looks on; else robots run in one thread
     std::function<void(std::uint32_t robot, std::string_view line)> print;  // a line that a robot has printed
 };
 
@@ -50,7 +52,8 @@ public:
     void restore(std::span<std::byte const>& bytes) override;
 
     RobotRange robots() const { return range_; }
-    FirmwareProgram const& program() const { return *program_; }
+    std::uint32_t category() const { return category_; }
+    std::shared_ptr<FirmwareProgram const> const& program() const { return program_; }
     FirmwareRobot const& robot(std::uint32_t robot) const { return robots_[robot - range_.first]; }
 
 private:
@@ -68,6 +71,8 @@ private:
     bool make_call(FirmwareCall& call, LibraryFunction const& function) const;
     bool note_call(FirmwareCall& call, LibraryFunction const& function) const;
     std::uint64_t budget(FirmwareCall const& call, std::uint64_t waited_cycles) const;
+    Stop run_core(FirmwareCall& call, std::uint64_t most_cycles) const;
+    bool is_observed(FirmwareCall const& call) const;
     void check_stack(FirmwareCall& call) const;
     void count_time(FirmwareCall& call) const;
     bool is_ahead(FirmwareCall const& call) const;
@@ -76,6 +81,7 @@ private:
     UserFailure failure_of(FirmwareCall const& call, std::string what) const;
 
     World& world_;
+    std::uint32_t category_;
     RobotRange range_;
     RobotSpec const& spec_;
     std::shared_ptr<FirmwareProgram const> program_;

@@ -13,8 +13,8 @@
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "firmware/code_places.hpp"
 #include "firmware/firmware_call.hpp"
-#include "firmware/source_line.hpp"
 
 namespace pogosim {
 
@@ -95,10 +95,13 @@ std::shared_ptr<FirmwareProgram const> load_firmware(FirmwareSpec const& spec, P
 }
 
 std::string place_in_firmware(FirmwareProgram const& program, std::uint32_t address) {
-    FirmwareSymbol const* const function = program.firmware.function_at(address);
-    std::string const name = function == nullptr ? fmt::format("0x{:08x}", address) : function->name;
-    std::string const line = source_line(program.bytes, address);
-    return line.empty() ? name : fmt::format("{} ({})", name, line);
+    CodePlaces const places(program);
+    if (!places.is_code(address)) {
+        return fmt::format("0x{:08x}", address);
+    }
+    std::string const& function = places.functions()[places.chain(places.chain_of(address)).back()];
+    CodePlaces::Line const& line = places.line(places.line_of(address));
+    return line.file.empty() ? function : fmt::format("{} ({}:{})", function, line.file, line.number);
 }
 
 }  // namespace pogosim

@@ -26,6 +26,7 @@ constexpr std::uint32_t kFloatingPoint = 0x6;  // arguments in floating-point re
 
 constexpr std::uint32_t kLoaded = 1;          // type of a segment
 constexpr std::uint32_t kSymbolTable = 2;     // type of a section
+constexpr std::uint32_t kWritable = 0x1;      // flag of a section
 constexpr std::uint32_t kInMemory = 0x2;      // flag of a section
 constexpr std::uint32_t kInstructions = 0x4;  // flag of a section
 constexpr unsigned kFunction = 2;             // type of a symbol; below it, variables and names without a type
@@ -64,6 +65,13 @@ public:
         firmware.entry = number<4>(0, 24);
         if (firmware.entry < begin || firmware.entry >= end) {
             fail(fmt::format("starts at 0x{:08x}, where it has no code", firmware.entry));
+        }
+        for (Section const& section : sections) {
+            if ((section.flags & kInMemory) != 0) {
+                std::uint32_t& bytes =
+                    (section.flags & kWritable) != 0 ? firmware.variable_bytes : firmware.program_bytes;
+                bytes += section.bytes;
+            }
         }
         firmware.symbols = symbols(sections);
         return firmware;

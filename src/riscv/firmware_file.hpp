@@ -27,7 +27,9 @@ struct Firmware {
     Code code;                                 // of its executable sections
     std::uint32_t entry = 0;                   // where it starts
     std::uint32_t variables_end = 0;           // in memory: what it does not reserve begins there
-    std::vector<FirmwareSymbol> symbols;       // ascending by address
+    std::uint32_t program_bytes = 0;           // of code and constants
+    std::uint32_t variable_bytes = 0;
+    std::vector<FirmwareSymbol> symbols;  // ascending by address
 
     /// Null: there is none. If several have the name, it is the first one.
     FirmwareSymbol const* find(std::string_view name) const;

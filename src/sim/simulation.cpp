@@ -19,6 +19,8 @@
 #include "config/places.hpp"
 #include "device/clock.hpp"
 #include "device/switched_off.hpp"
+#include "firmware/firmware_brain.hpp"
+#include "firmware/profile.hpp"
 #include "process/source_place.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/running_robot.hpp"
@@ -103,6 +105,12 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       stages_(options_.measure_stages) {
     if (controllers_.image().main == nullptr) {
         check_needs_no_program(world_);
+    }
+    for (auto const& brain : brains_) {
+        auto const* const firmware = dynamic_cast<FirmwareBrain const*>(brain.get());
+        if (profile_ != nullptr && firmware != nullptr) {
+            profile_->add(world_, firmware->category(), firmware->program());
+        }
     }
     auto native = std::make_unique<NativeProgram>(controllers_, crash_handler_, workers_);
     program_ = native.get();
@@ -217,6 +225,9 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
         return failure->code;
     }
     bool const all_pictures_written = finish();
+    if (profile_ != nullptr) {
+        profile_->write(options_.profile);
+    }
     controllers_.warn_of_unreturned_calls_at_end();
     controllers_.tell_at_end(channel_.receptions());
     controllers_.warn_of_stacks();
@@ -374,10 +385,27 @@ std::optional<UserFailure> Simulation::call_brains(bool (Brain::*part)()) {
     return failed == brains_.end() ? std::nullopt : (*failed)->failure();
 }
 
+/// A profile counts time, whatever the configuration says.
+void Simulation::make_profile() {
+    if (options_.profile.empty()) {
+        return;
+    }
+    auto profile = std::make_unique<Profile>(options_.profile_robots);
+    profile_ = profile.get();
+    observer_ = std::move(profile);
+    for (Category& category : world_.categories) {
+        if (category.spec.robot) {
+            category.spec.robot->cpu_time = CpuTime::counted;
+        }
+    }
+}
+
 FirmwareServices Simulation::firmware_services() {
+    make_profile();
     return {.seed = seed_,
             .timeout_s = scenario_.user_code_timeout_s,
             .workers = &workers_,
+            .observer = observer_.get(),
             .print = [this](std::uint32_t robot, std::string_view line) { services_.print_line(world_, robot, line); }};
 }
 

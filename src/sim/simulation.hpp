@@ -16,7 +16,7 @@
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
 #include "device/step_chips.hpp"
-#include "firmware/firmware_brain.hpp"
+#include "firmware/observer.hpp"
 #include "light/lighting.hpp"
 #include "physics/free_places.hpp"
 #include "physics/physics_engine.hpp"
@@ -39,7 +39,9 @@
 
 namespace pogosim {
 
+class Profile;
 class WindowDriver;
+struct FirmwareServices;
 
 struct RunOptions {
     bool progress_bar = false;
@@ -50,6 +52,10 @@ struct RunOptions {
     std::shared_ptr<Log> log{};                      // null: that of the process
     std::int64_t hash_period_steps = 0;              // a hash of the state in the log after so many steps each; 0: none
     std::string film{};                              // file of a film of the run; empty: none
+    std::string profile{};                           // file of a profile of robots' firmware; empty: none
+    std::uint32_t profile_robots = 1;                // how many robots are in it
+    std::optional<std::uint16_t> gdb_port{};         // at which a debugger looks at a robot's firmware; absent: none
+    std::optional<std::uint32_t> gdb_robot{};        // id; absent: the first one that runs firmware
     bool window = false;
     bool close_at_end = false;           // else the window stays open when the simulated time is over
     std::string program_name{};          // for the window's title
@@ -203,6 +209,7 @@ private:
 
     std::optional<UserFailure> run_steps();
     std::optional<UserFailure> call_brains(bool (Brain::*part)());
+    void make_profile();
     FirmwareServices firmware_services();
     void fit_time_step();
     void open_window();
@@ -227,6 +234,8 @@ private:
     IrChannel channel_;
     StepChips chips_;
     WorkerPool workers_;
+    std::unique_ptr<FirmwareObserver> observer_;  // null: none looks on while robots run firmware
+    Profile* profile_ = nullptr;                  // null: it is none
     Brains brains_;
     NativeProgram* program_ = nullptr;  // one of them
     std::unique_ptr<PhysicsEngine> physics_;

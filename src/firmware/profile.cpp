@@ -1,0 +1,287 @@
+#include "firmware/profile.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::uint8_t kReturnAddress = 1;  // register ra
+constexpr std::uint8_t kMillicode = 5;      // register t0, with which the compiler calls its own helpers
+constexpr std::size_t kStackPointer = 2;
+constexpr int kTicksWithSpans = 3;
+constexpr std::size_t kMostSpans = 20'000;
+constexpr std::size_t kMostFrames = 4'000;  // deeper calls count for their callers
+
+bool is_store(Operation operation) {
+    return operation == Operation::sb || operation == Operation::sh || operation == Operation::sw;
+}
+
+std::string json_text(std::string_view text) {
+    std::string result = "\"";
+    for (char const character : text) {
+        if (character == '"' || character == '\\') {
+            result += '\\';
+            result += character;
+        } else if (static_cast<unsigned char>(character) < ' ') {
+            result += fmt::format("\\u{:04x}", static_cast<unsigned>(character));
+        } else {
+            result += character;
+        }
+    }
+    return result + '"';
+}
+
+/// The elements of a list, each as text_of() says, on lines of their own.
+template <class List, class Text>
+std::string json_list(List const& list, Text const& text_of) {
+    std::string result = "[";
+    for (auto const& element : list) {
+        result += (result.size() > 1 ? ",\n  " : "\n  ") + text_of(element);
+    }
+    return result + "]";
+}
+
+}  // namespace
+
+void Profile::add(World const& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> const& program) {
+    if (program_ && program_ != program) {
+        return;
+    }
+    RobotRange const range = robots_of(world, category);
+    for (std::uint32_t robot = range.first; robot < range.last && robots_.size() < most_robots_; ++robot) {
+        robots_.push_back({.index = robot, .id = world.robots.id[robot], .category = world.categories[category].name});
+    }
+    if (!program_ && !robots_.empty()) {
+        program_ = program;
+        places_ = std::make_unique<CodePlaces>(*program);
+        processor_ = world.categories[category].spec.robot->model.processor;
+        paths_.push_back({});
+    }
+}
+
+bool Profile::observes(std::uint32_t robot) const {
+    return std::ranges::find(robots_, robot, &Robot::index) != robots_.end();
+}
+
+Profile::Robot& Profile::robot_of(std::uint32_t robot) {
+    return *std::ranges::find(robots_, robot, &Robot::index);
+}
+
+std::uint32_t Profile::child(std::uint32_t parent, std::uint32_t function) {
+    auto const number = static_cast<std::uint32_t>(paths_.size());
+    auto const [found, is_new] = children_.try_emplace({parent, function}, number);
+    if (is_new) {
+        paths_.push_back({.parent = parent, .function = function});
+    }
+    return found->second;
+}
+
+/// The path of the instruction at an address: what has called its function, then that, then what is inlined there.
+std::uint32_t Profile::path_at(Robot& self, std::uint32_t address) {
+    std::uint32_t const base = self.frames.empty() ? 0 : self.frames.back().caller_path;
+    std::uint32_t const chain = places_->chain_of(address);
+    if (self.path == 0 || chain != self.chain || base != self.chain_path) {
+        self.chain = chain;
+        self.chain_path = base;
+        self.path = base;
+        for (std::uint32_t const function : places_->chain(chain)) {
+            self.path = child(self.path, function);
+        }
+    }
+    return self.path;
+}
+
+Stop Profile::run(std::uint32_t robot, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
+                  double clock_us) {
+    Robot& self = robot_of(robot);
+    std::uint64_t const begin = core.cycles;
+    if (!self.frames.empty() && self.frames.back().returns_to == core.pc) {  // of a function of the library
+        end_span(self.frames.back(), clock_us);
+        self.frames.pop_back();
+    }
+    while (core.cycles - begin < most_cycles) {
+        std::uint32_t const from = core.pc;
+        std::uint64_t const before = core.cycles;
+        Stop const stop = pogosim::run(core, memory, code, 1);
+        std::uint64_t const cycles = core.cycles - before;
+        if (cycles == 0) {
+            return stop;
+        }
+        Step const& step = code.steps[(from - code.address) / 4];
+        if (self.ticks_begun > 0) {
+            paths_[path_at(self, from)].cycles += cycles;
+            LineCost& line = lines_[{places_->chain(places_->chain_of(from)).back(), places_->line_of(from)}];
+            line.cycles += cycles;
+            ++line.instructions;
+            self.tick.cycles += cycles;
+        }
+        note_memory(self, step, core);
+        if (core.pc != from + 4) {
+            double const now_us = clock_us + processor_.us_of(static_cast<double>(core.cycles - begin));
+            note_jump(self, step, from, core.pc, now_us);
+        }
+    }
+    return {StopReason::budget_used, core.pc, 0};
+}
+
+/// A call goes on in another frame, and ends with a jump to where it returns to.
+void Profile::note_jump(Robot& self, Step const& step, std::uint32_t from, std::uint32_t to, double now_us) {
+    bool const is_call = (step.operation == Operation::jal || step.operation == Operation::jalr) &&
+                         (step.rd == kReturnAddress || step.rd == kMillicode);
+    if (is_call && self.frames.size() < kMostFrames) {
+        Frame frame{.caller_path = path_at(self, from), .returns_to = from + 4};
+        if (self.ticks_begun > 0 && self.ticks_begun <= kTicksWithSpans && spans_.size() < kMostSpans) {
+            spans_.push_back({.robot = self.index,
+                              .function = places_->function_of(to),
+                              .begin_us = now_us,
+                              .depth = self.frames.size()});
+            frame.span = spans_.size();
+        }
+        self.frames.push_back(frame);
+        paths_[path_at(self, to)].calls += self.ticks_begun > 0 ? 1 : 0;
+        return;
+    }
+    if (step.operation != Operation::jalr) {
+        return;
+    }
+    auto const returned = std::find_if(self.frames.rbegin(), self.frames.rend(),
+                                       [to](Frame const& frame) { return frame.returns_to == to; });
+    if (returned != self.frames.rend()) {
+        for (std::ptrdiff_t left = returned - self.frames.rbegin() + 1; left > 0; --left) {
+            end_span(self.frames.back(), now_us);
+            self.frames.pop_back();
+        }
+    }
+}
+
+void Profile::end_span(Frame const& frame, double now_us) {
+    if (frame.span > 0) {
+        spans_[frame.span - 1].duration_us = now_us - spans_[frame.span - 1].begin_us;
+    }
+}
+
+/// The stack grows downwards. What is written between the variables and the stack is on the heap.
+void Profile::note_memory(Robot& self, Step const& step, Core const& core) const {
+    std::uint32_t const stack = core.x[kStackPointer];
+    std::uint32_t const end = program_->firmware.variables_end;
+    if (stack >= end) {
+        self.lowest_stack = std::min(self.lowest_stack, stack);
+    }
+    if (is_store(step.operation)) {
+        std::uint32_t const address = core.x[step.rs1] + static_cast<std::uint32_t>(step.immediate);
+        if (address >= end && address < self.lowest_stack) {
+            self.highest_heap = std::max(self.highest_heap, address + 1);
+        }
+    }
+}
+
+void Profile::note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, double clock_us) {
+    Robot& self = robot_of(robot);
+    loop_hz_ = loop_hz;
+    if (self.ticks_begun++ > 0) {
+        ticks_.push_back(self.tick);
+    }
+    self.tick = {.robot = robot, .number = ticks, .begin_us = clock_us};
+}
+
+void Profile::note_call(std::uint32_t robot, std::uint32_t address, double time_us) {
+    Robot& self = robot_of(robot);
+    if (self.ticks_begun > 0) {
+        paths_[path_at(self, address)].call_us += time_us;
+        self.tick.call_us += time_us;
+    }
+}
+
+void Profile::write(std::string const& file) const {
+    if (!program_) {
+        throw ConfigError("profile: no robot of the configuration runs firmware; name one with --firmware FILE");
+    }
+    auto const frames_of = [this](std::uint32_t path) {
+        std::vector<std::uint32_t> frames;
+        for (; path != 0; path = paths_[path].parent) {
+            frames.push_back(paths_[path].function);
+        }
+        std::ranges::reverse(frames);
+        return fmt::format("{}", fmt::join(frames, ", "));
+    };
+    std::vector<std::uint32_t> used;
+    for (std::uint32_t path = 1; path < paths_.size(); ++path) {
+        if (paths_[path].cycles > 0 || paths_[path].call_us > 0.0 || paths_[path].calls > 0) {
+            used.push_back(path);
+        }
+    }
+    MemoryImage const& image = *program_->firmware.image;
+    auto const memory_end = static_cast<std::uint32_t>(image.address + image.bytes.size());
+    std::uint32_t const end = program_->firmware.variables_end;
+    std::uint32_t deepest = 0;
+    std::uint32_t heap = 0;
+    for (Robot const& robot : robots_) {
+        deepest = std::max(deepest, robot.lowest_stack > memory_end ? 0 : memory_end - robot.lowest_stack);
+        heap = std::max(heap, robot.highest_heap > end ? robot.highest_heap - end : 0);
+    }
+    std::ofstream out(file, std::ios::binary);
+    out << fmt::format(
+        "{{\"version\": 1,\n\"firmware\": {},\n\"clock_hz\": {}, \"cycle_factor\": {}, \"loop_hz\": {},\n"
+        "\"memory_bytes\": {}, \"program_bytes\": {}, \"variable_bytes\": {},\n"
+        "\"deepest_stack_bytes\": {}, \"heap_bytes\": {},\n",
+        json_text(escaped(program_->file)), processor_.clock_hz, processor_.cycle_factor, loop_hz_,
+        processor_.memory_bytes, program_->firmware.program_bytes, program_->firmware.variable_bytes, deepest, heap);
+    out << "\"robots\": "
+        << json_list(robots_,
+                     [](Robot const& robot) {
+                         return fmt::format("{{\"id\": {}, \"category\": {}}}", robot.id, json_text(robot.category));
+                     })
+        << ",\n\"ticks\": "
+        << json_list(
+               ticks_,
+               [this](Tick const& tick) {
+                   return fmt::format(
+                       "{{\"robot\": {}, \"tick\": {}, \"begin_s\": {:.6f}, \"cycles\": {}, \"call_us\": {:.3f}}}",
+                       std::ranges::find(robots_, tick.robot, &Robot::index)->id, tick.number, tick.begin_us * 1e-6,
+                       tick.cycles, tick.call_us);
+               })
+        << ",\n\"functions\": "
+        << json_list(places_->functions(), [](std::string const& name) { return json_text(name); }) << ",\n\"lines\": "
+        << json_list(lines_,
+                     [this](auto const& entry) {
+                         CodePlaces::Line const& line = places_->line(entry.first.second);
+                         return fmt::format(
+                             "{{\"function\": {}, \"file\": {}, \"line\": {}, \"cycles\": {}, \"instructions\": {}}}",
+                             entry.first.first, json_text(escaped(line.file)), line.number, entry.second.cycles,
+                             entry.second.instructions);
+                     })
+        << ",\n\"stacks\": "
+        << json_list(used,
+                     [&](std::uint32_t number) {
+                         Path const& path = paths_[number];
+                         return fmt::format("{{\"frames\": [{}], \"cycles\": {}, \"call_us\": {:.3f}, \"calls\": {}}}",
+                                            frames_of(number), path.cycles, path.call_us, path.calls);
+                     })
+        << ",\n\"spans\": "
+        << json_list(
+               spans_,
+               [this](Span const& span) {
+                   return fmt::format(
+                       "{{\"robot\": {}, \"name\": {}, \"begin_us\": {:.3f}, \"duration_us\": {:.3f}, \"depth\": {}}}",
+                       std::ranges::find(robots_, span.robot, &Robot::index)->id, span.function, span.begin_us,
+                       span.duration_us, span.depth);
+               })
+        << "}\n";
+    out.close();
+    if (!out) {
+        throw OutputError(fmt::format("cannot write the profile {}", escaped(file)));
+    }
+}
+
+}  // namespace pogosim
