@@ -233,8 +233,10 @@ void check_light_levels(Scenario const& scenario) {
 void check_scripts(Scenario const& scenario) {
     for (ObjectConfig const& object : scenario.objects) {
         auto const* const script = object.spec.robot ? std::get_if<ScriptSpec>(&object.spec.robot->brain) : nullptr;
-        if (script == nullptr || object.nb == 0) {
-            continue;
+        Node const* const node = node_of(scenario, object);
+        bool const is_written = node != nullptr && node->find("brain") != nullptr;
+        if (script == nullptr || object.nb == 0 || !is_written) {
+            continue;  // walls have one that does nothing where a firmware is in the place of the program
         }
         if (script->entries.empty()) {
             log().warn("{}: objects.{}.brain: the script is empty, so these robots do nothing", object.line,

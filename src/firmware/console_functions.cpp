@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kLongestLine = 65536;  // longer lines are split, to limit memory use
 
 void say_line(FirmwareCall const& call) {
-    call.out.said.push_back({call.robot, {}, call.self.printed});
+    call.out.said.push_back({.robot = call.robot, .text = call.self.printed});
     call.self.printed.clear();
 }
 

@@ -309,9 +309,9 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     self.went_on_us = call.clock_us();
     if (is_observed(call)) {
         constexpr int usual_hz = 60;
-        std::uint32_t const ticks = program_->ticks ? variable<4>(self.memory, *program_->ticks) : 0;
         int const hz = program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
-        services_.observer->note_tick(call.robot, ticks, hz, static_cast<double>(call.clock_us()) + self.rest_us);
+        services_.observer->note_tick(call.robot, call.ticks(), hz,
+                                      static_cast<double>(call.clock_us()) + self.rest_us);
     }
     return true;
 }
@@ -352,8 +352,8 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
         (is_of_loop && function.use == StopwatchUse::resets && !begin_tick(call))) {
         return false;
     }
-    check_stack(call);
     call.function = function.name;
+    check_stack(call);
     CallOutcome const outcome = function.call(call);
     if (outcome == CallOutcome::repeats) {
         return self.is_starting && !self.is_restart_due;
@@ -363,6 +363,7 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
         services_.observer->note_call(call.robot, self.core.pc, call.time_us);
     }
     self.core.pc = self.core.x[kReturnAddress];
+    call.function = {};
     count_time(call);
     bool const ends_tick = std::exchange(self.ends_tick, is_of_loop && function.use == StopwatchUse::reads);
     if (outcome == CallOutcome::sleeps) {
@@ -391,20 +392,21 @@ void FirmwareBrain::join(Part& part) {
         } else if (std::ranges::none_of(warned_, [&](Slip const& slip) { return same_slip(slip, said.slip); })) {
             warned_.push_back(said.slip);
             log().warn("robot #{} of category '{}', tick {}, t = {:.4f} s: {}", world_.robots.id[said.robot],
-                       world_.categories[world_.robots.category[said.robot]].name, world_.devices.ticks[said.robot],
-                       world_.time_s(), said.text);
+                       world_.categories[world_.robots.category[said.robot]].name, said.ticks, world_.time_s(),
+                       said.text);
         }
     }
 }
 
+/// A call of the library is where its caller is.
 UserFailure FirmwareBrain::failure_of(FirmwareCall const& call, std::string what) const {
     FirmwareRobot const& self = call.self;
-    std::uint32_t const ticks = program_->ticks ? variable<4>(self.memory, *program_->ticks) : 0;
+    std::uint32_t const place = call.function.empty() ? self.core.pc : self.core.x[kReturnAddress] - 4;
     return {
         .what = std::move(what),
-        .where = fmt::format("{} of robot #{} of category '{}'{}", place_in_firmware(*program_, self.core.pc),
+        .where = fmt::format("{} of robot #{} of category '{}'{}", place_in_firmware(*program_, place),
                              world_.robots.id[call.robot], world_.categories[world_.robots.category[call.robot]].name,
-                             program_->ticks ? fmt::format(", tick {}", ticks) : "")};
+                             program_->ticks ? fmt::format(", tick {}", call.ticks()) : "")};
 }
 
 void FirmwareBrain::save(std::vector<std::byte>& bytes) const {

@@ -5,6 +5,11 @@
 
 namespace pogosim {
 
+std::uint32_t FirmwareCall::ticks() const {
+    std::byte const* const place = program.ticks ? self.memory.readable<4>(*program.ticks) : nullptr;
+    return place == nullptr ? 0 : read_little_endian<4>(place);
+}
+
 void FirmwareCall::give_float(float result) const {
     give(std::bit_cast<std::uint32_t>(result));
 }

@@ -22,6 +22,7 @@ namespace pogosim {
 struct FirmwareOutbox {
     struct Said {
         std::uint32_t robot = 0;
+        std::uint32_t ticks = 0;  // that it had made
         Slip slip{};  // of a warning, which is given once in a run; without an outcome: a line that it has printed
         std::string text{};
     };
@@ -64,6 +65,9 @@ struct FirmwareCall {
 
     std::int64_t& clock_us() const { return world.devices.clock_us[robot]; }
 
+    /// pogobot_ticks; 0 if the program has none.
+    std::uint32_t ticks() const;
+
     /// Argument number i, from 0 to 7.
     std::uint32_t argument(std::size_t i) const { return self.core.x[10 + i]; }
     std::uint8_t byte(std::size_t i) const { return static_cast<std::uint8_t>(argument(i)); }
@@ -86,7 +90,7 @@ struct FirmwareCall {
     [[gnu::cold, gnu::noinline]] void note_slip(std::string_view argument_name, std::string_view expected,
                                                 std::string_view outcome, Value const& value) const {
         Slip const slip{function, argument_name, expected, outcome};
-        out.said.push_back({robot, slip, slip_text(slip, value)});
+        out.said.push_back({robot, ticks(), slip, slip_text(slip, value)});
     }
 };
 

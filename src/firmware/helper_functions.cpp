@@ -26,7 +26,8 @@ CallOutcome get_random_seed(FirmwareCall& call) {
 }
 
 CallOutcome print_version(FirmwareCall& call) {
-    call.out.said.push_back({call.robot, {}, call.self.printed + " Pogolib Version : " POGOLIB_RELEASE_VERSION});
+    call.out.said.push_back(
+        {.robot = call.robot, .text = call.self.printed + " Pogolib Version : " POGOLIB_RELEASE_VERSION});
     call.self.printed.clear();
     return CallOutcome::returns;
 }

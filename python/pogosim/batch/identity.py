@@ -15,6 +15,8 @@ from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.option_words import CHOICES
 from pogosim.batch.run_files import without_outputs
+from pogosim.firmware import is_firmware
+from pogosim.installation import find_installation
 from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml
 
 # Keys that say, beside the names of outputs, where results go, not what they are.
@@ -46,6 +48,8 @@ def find_program(name: str) -> Path:
             content = file.read()
     except OSError as error:
         raise cannot("read the simulator", name, error) from None
+    if is_firmware(path):
+        return path.absolute()
     is_script = content.startswith(b"#!") or path.suffix == PYTHON
     if not is_script and not (content.startswith(EXECUTABLES) and MARK in content):
         raise BatchError(f"{name} is not a simulator; {expected}")
@@ -64,11 +68,14 @@ def digest_of(path: Path) -> str:
 
 
 def program_digest(program: Path) -> str:
-    """Return a digest of a program and of the simulator's library that it loads.
+    """Return a digest of a program, or of what runs a firmware, and of the simulator's library that it loads.
 
     Raises:
         BatchError: A file cannot be read.
+        InstallationError: A firmware is to run, and there is no simulator.
     """
+    if is_firmware(program):
+        return f"{file_digest(program)} {program_digest(find_installation().without_program)}"
     lister = ["otool", "-L"] if sys.platform == "darwin" else ["ldd"]
     libraries: list[Path] = []
     if shutil.which(lister[0]):

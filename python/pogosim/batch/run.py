@@ -26,6 +26,8 @@ from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.running import Watch
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.extensions import MODELS_VARIABLE, models_path
+from pogosim.firmware import is_firmware
+from pogosim.installation import find_installation
 from pogosim.lines import printable
 
 LOG = "log.txt"
@@ -368,7 +370,13 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
 
 
 def starting(program: str) -> list[str]:
-    """Return the start of a command line that runs a program: the Python that runs now, for a file in Python."""
+    """Return the start of a command line that runs a program: the Python that runs now, for a file in Python.
+
+    Raises:
+        InstallationError: It is a firmware, and there is no simulator.
+    """
+    if is_firmware(Path(program)):
+        return [str(find_installation().without_program), "--firmware", program]
     return [sys.executable, program] if program.endswith(PYTHON) else [program]
 
 

@@ -148,8 +148,9 @@ class Simulation:
 
         Args:
             program: Shared object, as `make sim` makes beside the executable (`hanabi.so` for `hanabi`); for an
-                executable, the shared object beside it is taken. None: no category of the configuration needs one
-                (`brain: host`, or a script).
+                executable, the shared object beside it is taken. The ELF file of a firmware (`make emu`) drives the
+                robots of all categories that need a program. None: no category of the configuration needs one
+                (`brain: host`, a script or a firmware).
             configuration: YAML file. Nothing is drawn, and no console file written, unless `set` says so.
             seed: 0 to 2^32 - 1; None: that of the configuration, or a random one.
             set: Values for keys of the configuration, such as {"objects.robots.nb": 50}.
