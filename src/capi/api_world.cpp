@@ -260,6 +260,12 @@ void* pogosim_world_user_data(uint32_t object) {
     Object const& found = object_at(__func__, object);
     RunServices& services = *context.services;
     services.gave_user_data = true;
+    if (found.robot != kNone && !pogosim::needs_program(context.world->spec_of(found.robot).brain)) [[unlikely]] {
+        services.warn_once(
+            "pogosim_world_user_data(): object {} is driven by another brain than this program, which does not use this "
+            "USERDATA",
+            object);
+    }
     return found.robot == kNone ? nullptr : services.controllers->controller_of(found.robot).user_data;
 }
 

@@ -192,6 +192,7 @@ public:
     World& world() { return world_; }
     IrChannel const& channel() const { return channel_; }
     Controllers const& controllers() const { return controllers_; }
+    Brains const& brains() const { return brains_; }
     StageClock const& stages() const { return stages_; }
     std::int64_t step_count() const;  // steps of the whole run
 

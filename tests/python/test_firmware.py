@@ -127,7 +127,7 @@ def test_hash_sees_each_robots_memory(tmp_path: Path) -> None:
     def hash_of(step: str) -> str:
         folder = tmp_path / re.sub(r"\W", "_", step)
         result = run_firmware(firmware_of(folder, text(step)), folder, {}, ["--hash", "200"])
-        return re.findall(r"state after step 200: (\w+)", result.text)[0]
+        return str(re.findall(r"state after step 200: (\w+)", result.text)[0])
 
     assert hash_of("mydata->level = 3;") != hash_of("mydata->level = 4;")
 
@@ -231,7 +231,7 @@ def test_robots_of_two_firmwares_and_a_program_talk(tmp_path: Path) -> None:
     }"""
     objects = {
         name: {"type": "pogobot", "nb": 1, "x": 300 + 60 * place, "y": 500, "geometry": "disk", "radius": 26.5}
-        for place, name in enumerate(("robots", "others", "natives"))
+        for place, name in enumerate(("natives", "robots", "others"))
     }
     objects["robots"]["brain"] = str(firmware_of(tmp_path / "sends", text(sends)))
     objects["others"]["brain"] = str(firmware_of(tmp_path / "hears", text(hears)))
@@ -468,7 +468,10 @@ def failure(tmp_path: Path, step: str, globals_: str = "", settings: dict[str, o
         ("mydata->level = *(volatile int16_t*)0x40000000;", "it accessed 0x40000000, where there is no memory"),
         ("*(volatile uint32_t*)(wrong + 1) = 1;", "it accessed 0x00800001, which is no multiple of the size"),
         ("((void (*)(void))wrong)();", "it jumped to 0x00800000, where there is no code"),
-        ("pogobot_imu_read((float*)wrong, (float*)wrong);", "it gave pogobot_imu_read() the address 0x00800000"),
+        (
+            "pogobot_imu_read((float*)wrong, (float*)wrong); mydata->count = 0;",
+            "it gave pogobot_imu_read() the",
+        ),
         ("__builtin_trap();", "it executed ebreak, where programs give up"),
         ('asm volatile(".word 0xffffffff");', "where 0xffffffff is no instruction of the robot's processor"),
     ],
