@@ -17,6 +17,7 @@ from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
+from pogosim.projects import run_make
 
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
 Without -c, a project is run with its conf/test.yaml. Without PROJECT, it is the project in the working folder; where
@@ -101,7 +102,8 @@ def make_project(folder: Path, pogosim: Installation) -> Path:
     """Run `make sim` in a project; returns its program.
 
     Raises:
-        RunError: It fails. make has said why.
+        RunError: It is not a project.
+        ProjectError: make fails, and has said why.
     """
     if not (folder / "Makefile").is_file():
         if folder == Path():  # perhaps none was meant
@@ -110,17 +112,7 @@ def make_project(folder: Path, pogosim: Installation) -> Path:
                 "a program or a firmware first (pogosim new NAME makes a project)"
             )
         raise RunError(f"{folder} is not a project: it has no Makefile (pogosim new NAME makes a project)")
-    command = ["make", "--silent", "--no-print-directory", "-C", str(folder), "sim"]
-    has_own = (folder / "pogosim").exists() or "POGOSIM_DIR" in os.environ
-    environment = os.environ | ({} if has_own else {"POGOSIM_DIR": str(pogosim.folder)})
-    for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
-        environment.pop(name, None)
-    try:
-        code = subprocess.run(command, check=False, env=environment, stdout=sys.stderr).returncode
-    except FileNotFoundError:
-        raise RunError("make is not installed (Debian, Ubuntu: apt install make)") from None
-    if code != 0:
-        raise RunError(f"{folder} cannot be built; see the messages above")
+    run_make(folder, "sim", pogosim)
     return folder / Path(os.path.realpath(folder)).name
 
 
@@ -129,6 +121,7 @@ def program_of(what: Path, pogosim: Installation) -> Path:
 
     Raises:
         RunError: There is none.
+        ProjectError: make fails, and has said why.
     """
     if what.is_dir():
         return make_project(what, pogosim)
@@ -151,6 +144,7 @@ def command_of(what: Path | None, options: Sequence[str], pogosim: Installation)
 
     Raises:
         RunError: There is none.
+        ProjectError: make fails, and has said why.
     """
     if what is not None and is_firmware(what):
         return [str(pogosim.without_program), "--firmware", str(what), *options]

@@ -1,0 +1,40 @@
+"""Projects of robots' programs: what make builds in their folders."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from pogosim.errors import ToolError
+from pogosim.installation import Installation
+
+
+class ProjectError(ToolError):
+    """A project cannot be built; says why."""
+
+
+def run_make(folder: Path, target: str, pogosim: Installation, name: Path | None = None) -> None:
+    """Run make in a project, with this simulator unless the project or the environment names another one.
+
+    Args:
+        folder: The project.
+        target: What to make.
+        pogosim: The simulator.
+        name: What the user calls the project; None: its folder.
+
+    Raises:
+        ProjectError: It fails. make has said why.
+    """
+    command = ["make", "--silent", "--no-print-directory", "-C", str(folder), target]
+    has_own = (folder / "pogosim").exists() or "POGOSIM_DIR" in os.environ
+    environment = os.environ | ({} if has_own else {"POGOSIM_DIR": str(pogosim.folder)})
+    for variable in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+        environment.pop(variable, None)
+    try:
+        code = subprocess.run(command, check=False, env=environment, stdout=sys.stderr).returncode
+    except FileNotFoundError:
+        raise ProjectError("make is not installed (Debian, Ubuntu: apt install make)") from None
+    if code != 0:
+        raise ProjectError(f"{name or folder} cannot be built; see the messages above")
