@@ -157,7 +157,7 @@ def kind_of(name: str, is_of_library: bool) -> str:
 def tooltip(profile: Profile, node: Node, name: str) -> str:
     """Return what is told of a box."""
     ticks, total = len(profile.ticks), node.total
-    calls = "" if node.function is None else f"; {plain(node.calls / ticks)} calls per tick"
+    calls = "" if node.function is None else f"; calls per tick: {plain(node.calls / ticks)}"
     return (
         f"{name}: {plain(total / ticks)} cycles per tick, {percent(total / total_cycles(profile))}; "
         f"{plain(node.own / ticks)} of its own{calls}"

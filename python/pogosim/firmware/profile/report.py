@@ -85,8 +85,8 @@ def hottest(profile: Profile, sources: Sources) -> list[str]:
     """Return the table of lines."""
     ticks, whole = len(profile.ticks), total_cycles(profile)
     lines = [line for line in hottest_lines(profile) if line.cycles > 0]
-    titles = ("line", "cycles/tick", "share", "instructions/tick", "function", "source")
-    rows = [
+    titles: tuple[str, ...] = ("line", "cycles/tick", "share", "instructions/tick", "function", "source")
+    rows: list[tuple[str, ...]] = [
         (
             shown_place(line.file, line.number),
             plain(line.cycles / ticks),
@@ -97,6 +97,8 @@ def hottest(profile: Profile, sources: Sources) -> list[str]:
         )
         for line in lines
     ]
+    if not any(source for *_, source in rows):  # no file is found
+        titles, rows = titles[:-1], [row[:-1] for row in rows]
     return table("Hottest lines, without what they call:", titles, rows, left=(0, 4, 5)) if rows else []
 
 

@@ -33,8 +33,8 @@ class Family:
 
 
 # The C libraries have aliases with underscores, of which debug information may name any: _sin, __ieee754_pow.
-DOUBLE_MATHS = Family("double", re.compile(rf"(?:__ieee754_|_{{0,2}})(?:{MATHS})"))
-FLOAT_MATHS = Family("float", re.compile(rf"(?:__ieee754_|_{{0,2}})(?:{MATHS})f"))
+DOUBLE_MATHS = Family("double", re.compile(rf"(?:__ieee754_|__kernel_|_{{0,2}})(?:{MATHS})"))
+FLOAT_MATHS = Family("float", re.compile(rf"(?:__ieee754_|__kernel_|_{{0,2}})(?:{MATHS})f"))
 DOUBLE = Family(
     "double",
     re.compile(
@@ -73,7 +73,7 @@ def family_of(name: str) -> Family | None:
 def name_in_source(name: str) -> str:
     """Return the name by which a program calls a function of the C library: sin for _sin."""
     if family_of(name) in (DOUBLE_MATHS, FLOAT_MATHS):
-        return name.removeprefix("__ieee754_").lstrip("_")
+        return re.sub("^__ieee754_|^__kernel_|^_+", "", name)
     if family_of(name) is PRINTING:
         return re.sub(r"^_{1,2}(?:[dfilms]_)?", "", name)
     return name
