@@ -30,6 +30,8 @@ public:
     /// Whether there is an instruction at an address.
     bool is_code(std::uint32_t address) const { return (address - address_) / 4 < chain_of_.size(); }
 
+    std::uint32_t word_of(std::uint32_t address) const { return (address - address_) / 4; }
+
     // Of an instruction: the number of its chain, and of its line.
     std::uint32_t chain_of(std::uint32_t address) const { return chain_of_[(address - address_) / 4]; }
     std::uint32_t line_of(std::uint32_t address) const { return line_of_[(address - address_) / 4]; }

@@ -67,6 +67,7 @@ void Profile::add(World const& world, std::uint32_t category, std::shared_ptr<Fi
         places_ = std::make_unique<CodePlaces>(*program);
         processor_ = world.categories[category].spec.robot->model.processor;
         paths_.push_back({});
+        line_of_word_.resize(program->firmware.code.bytes() / 4);
     }
 }
 
@@ -102,6 +103,46 @@ std::uint32_t Profile::path_at(Robot& self, std::uint32_t address) {
     return self.path;
 }
 
+std::uint32_t Profile::line_at(std::uint32_t address) {
+    std::uint32_t& known = line_of_word_[places_->word_of(address)];
+    if (known == 0) {
+        std::uint32_t const function = places_->chain(places_->chain_of(address)).back();
+        auto const number = static_cast<std::uint32_t>(lines_.size());
+        auto const [found, is_new] = number_of_line_.try_emplace({function, places_->line_of(address)}, number);
+        if (is_new) {
+            lines_.push_back({.function = function, .line = places_->line_of(address)});
+        }
+        known = found->second + 1;
+    }
+    return known - 1;
+}
+
+/// The cost of a path or line in the tick of a robot, which is noted as used.
+Profile::Cost& Profile::cost_of(std::uint32_t number, std::vector<Cost>& costs, std::vector<std::uint32_t>& used) {
+    if (costs.size() <= number) {
+        costs.resize(std::size_t{number} + 1);
+    }
+    Cost& cost = costs[number];
+    if (cost.cycles == 0 && cost.calls == 0 && cost.call_us == 0.0) {
+        used.push_back(number);
+    }
+    return cost;
+}
+
+/// A tick that has ended counts; one in which the run ends does not.
+void Profile::end_tick(Robot& self) {
+    ticks_.push_back(self.tick);
+    auto const count = [](auto& totals, std::vector<Cost>& costs, std::vector<std::uint32_t>& used) {
+        for (std::uint32_t const number : used) {
+            totals[number].cost.add(costs[number]);
+            costs[number] = {};
+        }
+        used.clear();
+    };
+    count(paths_, self.path_costs, self.used_paths);
+    count(lines_, self.line_costs, self.used_lines);
+}
+
 Stop Profile::run(std::uint32_t robot, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
                   double clock_us) {
     Robot& self = robot_of(robot);
@@ -120,10 +161,8 @@ Stop Profile::run(std::uint32_t robot, Core& core, Memory& memory, Code const& c
         }
         Step const& step = code.steps[(from - code.address) / 4];
         if (self.ticks_begun > 0) {
-            paths_[path_at(self, from)].cycles += cycles;
-            LineCost& line = lines_[{places_->chain(places_->chain_of(from)).back(), places_->line_of(from)}];
-            line.cycles += cycles;
-            ++line.instructions;
+            cost_of(path_at(self, from), self.path_costs, self.used_paths).cycles += cycles;
+            cost_of(line_at(from), self.line_costs, self.used_lines).add({.cycles = cycles, .calls = 1});
             self.tick.cycles += cycles;
         }
         note_memory(self, step, core);
@@ -149,7 +188,9 @@ void Profile::note_jump(Robot& self, Step const& step, std::uint32_t from, std::
             frame.span = spans_.size();
         }
         self.frames.push_back(frame);
-        paths_[path_at(self, to)].calls += self.ticks_begun > 0 ? 1 : 0;
+        if (self.ticks_begun > 0) {
+            ++cost_of(path_at(self, to), self.path_costs, self.used_paths).calls;
+        }
         return;
     }
     if (step.operation != Operation::jalr) {
@@ -190,7 +231,7 @@ void Profile::note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, d
     Robot& self = robot_of(robot);
     loop_hz_ = loop_hz;
     if (self.ticks_begun++ > 0) {
-        ticks_.push_back(self.tick);
+        end_tick(self);
     }
     self.tick = {.robot = robot, .number = ticks, .begin_us = clock_us};
 }
@@ -198,7 +239,7 @@ void Profile::note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, d
 void Profile::note_call(std::uint32_t robot, std::uint32_t address, double time_us) {
     Robot& self = robot_of(robot);
     if (self.ticks_begun > 0) {
-        paths_[path_at(self, address)].call_us += time_us;
+        cost_of(path_at(self, address), self.path_costs, self.used_paths).call_us += time_us;
         self.tick.call_us += time_us;
     }
 }
@@ -217,7 +258,8 @@ void Profile::write(std::string const& file) const {
     };
     std::vector<std::uint32_t> used;
     for (std::uint32_t path = 1; path < paths_.size(); ++path) {
-        if (paths_[path].cycles > 0 || paths_[path].call_us > 0.0 || paths_[path].calls > 0) {
+        Cost const& cost = paths_[path].cost;
+        if (cost.cycles > 0 || cost.call_us > 0.0 || cost.calls > 0) {
             used.push_back(path);
         }
     }
@@ -254,19 +296,19 @@ void Profile::write(std::string const& file) const {
         << ",\n\"functions\": "
         << json_list(places_->functions(), [](std::string const& name) { return json_text(name); }) << ",\n\"lines\": "
         << json_list(lines_,
-                     [this](auto const& entry) {
-                         CodePlaces::Line const& line = places_->line(entry.first.second);
+                     [this](Line const& entry) {
+                         CodePlaces::Line const& line = places_->line(entry.line);
                          return fmt::format(
                              "{{\"function\": {}, \"file\": {}, \"line\": {}, \"cycles\": {}, \"instructions\": {}}}",
-                             entry.first.first, json_text(escaped(line.file)), line.number, entry.second.cycles,
-                             entry.second.instructions);
+                             entry.function, json_text(escaped(line.file)), line.number, entry.cost.cycles,
+                             entry.cost.calls);
                      })
         << ",\n\"stacks\": "
         << json_list(used,
                      [&](std::uint32_t number) {
                          Path const& path = paths_[number];
                          return fmt::format("{{\"frames\": [{}], \"cycles\": {}, \"call_us\": {:.3f}, \"calls\": {}}}",
-                                            frames_of(number), path.cycles, path.call_us, path.calls);
+                                            frames_of(number), path.cost.cycles, path.cost.call_us, path.cost.calls);
                      })
         << ",\n\"spans\": "
         << json_list(

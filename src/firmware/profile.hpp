@@ -32,13 +32,29 @@ public:
     void write(std::string const& file) const;
 
 private:
+    struct Cost {
+        std::uint64_t cycles = 0;
+        double call_us = 0.0;
+        std::uint64_t calls = 0;  // of a line: instructions
+
+        void add(Cost const& more) {
+            cycles += more.cycles;
+            call_us += more.call_us;
+            calls += more.calls;
+        }
+    };
+
     /// A call path: a function, and the path to it.
     struct Path {
         std::uint32_t parent = 0;  // of the first one: itself
         std::uint32_t function = 0;
-        std::uint64_t cycles = 0;
-        double call_us = 0.0;
-        std::uint64_t calls = 0;
+        Cost cost{};
+    };
+
+    struct Line {
+        std::uint32_t function = 0;  // the innermost one
+        std::uint32_t line = 0;      // of CodePlaces
+        Cost cost{};
     };
 
     struct Frame {
@@ -63,11 +79,6 @@ private:
         std::size_t depth;
     };
 
-    struct LineCost {
-        std::uint64_t cycles = 0;
-        std::uint64_t instructions = 0;
-    };
-
     struct Robot {
         std::uint32_t index;  // in World::robots
         std::uint32_t id;
@@ -80,11 +91,19 @@ private:
         std::uint32_t highest_heap = 0;
         int ticks_begun = 0;
         Tick tick{};
+        // Of this tick, which count when it has ended: by path, and by line.
+        std::vector<Cost> path_costs{};
+        std::vector<std::uint32_t> used_paths{};
+        std::vector<Cost> line_costs{};
+        std::vector<std::uint32_t> used_lines{};
     };
 
     Robot& robot_of(std::uint32_t robot);
     std::uint32_t child(std::uint32_t parent, std::uint32_t function);
     std::uint32_t path_at(Robot& self, std::uint32_t address);
+    std::uint32_t line_at(std::uint32_t address);
+    static Cost& cost_of(std::uint32_t number, std::vector<Cost>& costs, std::vector<std::uint32_t>& used);
+    void end_tick(Robot& self);
     void note_jump(Robot& self, Step const& step, std::uint32_t from, std::uint32_t to, double now_us);
     void note_memory(Robot& self, Step const& step, Core const& core) const;
     void end_span(Frame const& frame, double now_us);
@@ -96,7 +115,9 @@ private:
     std::vector<Robot> robots_;
     std::vector<Path> paths_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> children_;  // of a path, by function
-    std::map<std::pair<std::uint32_t, std::uint32_t>, LineCost> lines_;          // by innermost function and line
+    std::vector<Line> lines_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> number_of_line_;  // by function and line
+    std::vector<std::uint32_t> line_of_word_;  // 1 + its number, of each word of code; 0: not looked up yet
     std::vector<Tick> ticks_;
     std::vector<Span> spans_;
     int loop_hz_ = 0;

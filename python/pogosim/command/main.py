@@ -28,6 +28,9 @@ COMMANDS = Table(
         "new": Own("pogosim.command.new:main", "make a project: a program, a configuration and a Makefile"),
         "run": Own("pogosim.command.run:main", "compile a project or a source file, and run it"),
         "profile": Own("pogosim.command.profile:main", "tell where the cycles of a tick go, on emulated robots"),
+        "compare-brains": Own(
+            "pogosim.command.compare_brains:main", "find where a program in C and its firmware begin to differ"
+        ),
         "batch": Own("pogosim.batch.command_line:main", "run a program many times, with every combination of options"),
         "optimize": Own(
             "pogosim.optimize.command:main", "search for the parameters that make an objective as large as possible"

@@ -119,7 +119,7 @@ def measured(program: Path, robots: int, options: Sequence[str]) -> Iterator[Mea
         folders = (*folders_of(Path(profile.firmware)), program.absolute().parent)
         yield Measured(profile, program, folders)
         return
-    from pogosim.firmware.profile.making import firmware_of
+    from pogosim.firmware.making import firmware_of
     from pogosim.firmware.profile.running import profile_run
 
     chosen = configured(program, options)

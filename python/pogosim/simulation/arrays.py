@@ -108,6 +108,13 @@ class RunState:
             self._arrays[key] = found
         return self._arrays[key]
 
+    def firmware_bytes(self, category: str, count: int, address: int, size: int) -> npt.NDArray[np.uint8]:
+        """Return a copy of bytes in the memory of the `count` robots of a category. Shape (count, size)."""
+        found = np.zeros((count, size), dtype=np.uint8)
+        place = found.ctypes.data_as(c_void_p)
+        check(library().pogosim_run_firmware_bytes(self.pointer, category.encode(), address, size, place))
+        return found
+
     def kept_writable(self, name: str, make: Callable[[], npt.NDArray[Any]]) -> npt.NDArray[Any]:
         """Return the writable array that `make` gave at first. `retire` finds it by this."""
         if name not in self._writable:

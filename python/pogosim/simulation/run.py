@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import math
 import os
@@ -17,12 +18,15 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
+from pogosim.firmware import is_firmware
 from pogosim.lines import printable
+from pogosim.nearest_name import advice
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process, writable
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.firmware_variables import USER_DATA, variables_of
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.user_data import user_data_type
@@ -452,7 +456,8 @@ class Simulation:
     def user_data(self) -> npt.NDArray[Any]:
         """USERDATA of the robots, as a structured array: `sim.user_data["age"]`. Shape (robots,).
 
-        It is the robots' own memory, and can be written. Its type comes from the program's debug information.
+        It is the robots' own memory, and can be written. Its type comes from the program's debug information. That of
+        a firmware is a copy, which cannot be written, and zero for robots that do not run it.
 
         Raises:
             SimulationError: The program has no user data, or was compiled without `-g`.
@@ -460,12 +465,52 @@ class Simulation:
         run, program = self._run, self.program
         if program is None:
             raise SimulationError("the simulation has no program, and so no user data")
+        if is_firmware(program):
+            return self._user_data_of_firmware(program)
 
         def typed() -> npt.NDArray[Any]:
             kind = user_data_type(program, int(run.number("user_data_bytes")))
             return writable(run.array("robots.user_data")).view(kind)
 
         return run.kept_writable("user_data", typed)
+
+    def _user_data_of_firmware(self, program: Path) -> npt.NDArray[Any]:
+        if USER_DATA not in variables_of(program):
+            raise SimulationError(f"{program} has no user data (REGISTER_USERDATA)")
+        kind = variables_of(program)[USER_DATA].type
+        found = np.zeros(len(self.robot_categories), dtype=kind)
+        for number, name in enumerate(self.categories):
+            with contextlib.suppress(ConfigurationError):  # something else drives its robots
+                found[self.robot_categories == number] = self.firmware_variable(USER_DATA, name)
+        found.flags.writeable = False
+        return found
+
+    def firmware_variable(
+        self, name: str, category: str = "robots", firmware: PathLike | None = None
+    ) -> npt.NDArray[Any]:
+        """Return a copy of a variable of robots that run firmware. Shape (robots of the category, ...).
+
+        Args:
+            name: A variable that is not on the stack, such as "opinion"; "mydata" is USERDATA, a structured array.
+            category: A category whose robots run firmware.
+            firmware: Its ELF file; None: `program`.
+
+        Raises:
+            ConfigurationError: The robots of the category do not run firmware.
+            SimulationError: The file has no such variable, or no debug information.
+        """
+        file = self.program if firmware is None else given.path("firmware", firmware)
+        if file is None:
+            raise SimulationError("the simulation has no program: name the firmware")
+        known = variables_of(file)
+        if name not in known:
+            raise SimulationError(f"{file} has no variable {shown(name)}{advice(name, known)}")
+        number = self.categories.index(category) if category in self.categories else -1
+        count = int(np.count_nonzero(self.robot_categories == number))
+        variable = known[name]
+        with self._busy():
+            memory = self._run.firmware_bytes(category, count, variable.address, variable.type.itemsize)
+        return variable.values(memory)
 
     def brain(self, category: str) -> Brain:
         """Return the arrays that drive the robots of a category whose configuration says `brain: host`, see `Brain`.

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from pogosim.errors import ToolError
 from pogosim.firmware import is_firmware
-from pogosim.firmware.profile.raw import ProfileError
 from pogosim.firmware.profile.sources import folders_of
 from pogosim.installation import Installation
 from pogosim.projects import run_make
@@ -20,6 +20,10 @@ ROBOT_COMPILERS = {".c": f"{TRIPLE}-gcc", ".cpp": f"{TRIPLE}-g++"}
 FIRMWARE = Path("build", "emu", "firmware.elf")  # in a project
 OF_TEMPLATE = ("Makefile", "robot.mk")
 HEADERS = {".h", ".hpp"}
+
+
+class FirmwareError(ToolError):
+    """There is no firmware, and none can be made; says what to do."""
 
 
 @dataclass(frozen=True)
@@ -39,21 +43,21 @@ def firmware_of(what: Path, pogosim: Installation) -> Iterator[Program]:
         pogosim: The simulator.
 
     Raises:
-        ProfileError: It is none of these, or the robots' compiler is missing.
+        FirmwareError: It is none of these, or the robots' compiler is missing.
         ProjectError: It cannot be built; make has said why.
         OSError: It cannot be read, or the temporary project cannot be written.
     """
     if what.is_dir():
         yield Program(made_in(what, what, pogosim), (what,))
     elif not what.exists():
-        raise ProfileError(f"there is no firmware, project, source file or profile {what}")
+        raise FirmwareError(f"there is no firmware, project, source file or profile {what}")
     elif what.suffix in ROBOT_COMPILERS:
         with temporary_project(what, pogosim) as folder:
             yield Program(made_in(folder, what, pogosim), (what.parent,))
     elif is_firmware(what):
         yield Program(what, tuple(folders_of(what)))
     else:
-        raise ProfileError(
+        raise FirmwareError(
             f"{what} is no firmware of a robot (ELF file for RISC-V); expected one, as make emu builds it, the folder "
             "of a project, a .c or .cpp file, or a profile (.json)"
         )
@@ -68,14 +72,14 @@ def made_in(folder: Path, what: Path, pogosim: Installation) -> Path:
         pogosim: The simulator.
 
     Raises:
-        ProfileError: The robots' compiler is missing, or it is no project that makes firmware.
+        FirmwareError: The robots' compiler is missing, or it is no project that makes firmware.
         ProjectError: It cannot be built; make has said why.
     """
     makefile = folder / "Makefile"
     if not makefile.is_file():
-        raise ProfileError(f"{what} is not a project: it has no Makefile (pogosim new NAME makes a project)")
+        raise FirmwareError(f"{what} is not a project: it has no Makefile (pogosim new NAME makes a project)")
     if "emu:" not in makefile.read_text(encoding="utf-8", errors="replace"):
-        raise ProfileError(
+        raise FirmwareError(
             f"{makefile} cannot make firmware for emulated robots: it has no target emu; take Makefile and robot.mk of "
             f"{pogosim.template}"
         )
@@ -83,7 +87,7 @@ def made_in(folder: Path, what: Path, pogosim: Installation) -> Path:
     run_make(folder, "emu", pogosim, what)
     firmware = folder / FIRMWARE
     if not firmware.is_file():
-        raise ProfileError(f"make emu in {what} has not made {FIRMWARE}; is BUILD_DIR set?")
+        raise FirmwareError(f"make emu in {what} has not made {FIRMWARE}; is BUILD_DIR set?")
     return firmware
 
 
@@ -91,11 +95,11 @@ def check_compiler(folder: Path) -> None:
     """Check that the robots' compiler is installed.
 
     Raises:
-        ProfileError: It is missing.
+        FirmwareError: It is missing.
     """
     compiler = ROBOT_COMPILERS[".cpp" if any(folder.glob("*.cpp")) else ".c"]
     if shutil.which(compiler) is None:
-        raise ProfileError(
+        raise FirmwareError(
             f"the compiler for robots, {compiler}, is not installed "
             f"(Debian, Ubuntu: apt install gcc-{TRIPLE} picolibc-{TRIPLE})"
         )
@@ -104,7 +108,7 @@ def check_compiler(folder: Path) -> None:
 @contextlib.contextmanager
 def temporary_project(source: Path, pogosim: Installation) -> Iterator[Path]:
     """Make a project of a source file and the headers beside it, as links; it is removed at the end."""
-    with tempfile.TemporaryDirectory(prefix="pogosim-profile-") as parent:
+    with tempfile.TemporaryDirectory(prefix="pogosim-firmware-") as parent:
         folder = Path(parent, "program")
         folder.mkdir()
         for name in OF_TEMPLATE:
