@@ -29,6 +29,7 @@ try:
     import functions
     import gallery
     import lamps
+    import loads
     import magnetometer
     import messages
     import mistakes
@@ -63,6 +64,7 @@ SCRIPTS: dict[str, ModuleType] = {
         functions,
         gallery,
         lamps,
+        loads,
         magnetometer,
         messages,
         mistakes,

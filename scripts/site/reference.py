@@ -12,6 +12,7 @@ from links import ROOT
 NOT_SHOWN = {"pogobase.h", "pogosim/pogolib.h", "sdk/magnetometer.h"}
 # Modules of the package that are commands, or other names of commands.
 NOT_FOR_SCRIPTS = {"__init__", "__main__", "command"}
+OF_FIRMWARE = "emu"  # compiled into programs for the emulated processor; no room
 ROOMS_SETTINGS = [
     "INPUT = src",
     "RECURSIVE = YES",
@@ -43,7 +44,8 @@ def room_pages(folder: Path) -> dict[str, str]:
     """Return a page for each folder of src/."""
     headers = read_headers(ROOMS_SETTINGS, ROOT, folder)
     pages = {}
-    for room in sorted(path for path in (ROOT / "src").iterdir() if path.is_dir() and not path.is_symlink()):
+    folders = (path for path in (ROOT / "src").iterdir() if path.is_dir() and not path.is_symlink())
+    for room in sorted(path for path in folders if path.name != OF_FIRMWARE):
         text = f"# {room.name}\n\nHeaders of `src/{room.name}/`. Private members are left out.\n\n"
         for path in sorted(room.rglob("*.hpp")):
             name = path.relative_to(ROOT / "src").as_posix()

@@ -262,7 +262,7 @@ void* pogosim_world_user_data(uint32_t object) {
     services.gave_user_data = true;
     if (found.robot != kNone && !pogosim::needs_program(context.world->spec_of(found.robot).brain)) [[unlikely]] {
         services.warn_once(
-            "pogosim_world_user_data(): object {} is driven by another brain than this program, which does not use this "
+            "pogosim_world_user_data(): another brain than this program drives object {}, which does not use this "
             "USERDATA",
             object);
     }

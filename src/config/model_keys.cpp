@@ -116,7 +116,7 @@ std::span<Key<ProcessorSpec> const> processor_keys() {
         K{"clock_hz", &ProcessorSpec::clock_hz, between(1, 4e9), "Hz",
           "Clock rate. Code takes no time unless `cpu_time` is counted."},
         K{"memory_bytes", &ProcessorSpec::memory_bytes, between(1024, 4e9), "bytes",
-          "Memory of a firmware for program, variables, stack and what it allocates. Of a program in C, warnings say "
+          "Memory of a firmware for program, variables, stack and what it allocates. For a program in C, warnings say "
           "when it would not be enough."},
         K{"cycle_factor", &ProcessorSpec::cycle_factor, above(0).up_to(1000), "",
           "By which all cycles are multiplied, to fit a measurement on a robot."},
@@ -134,10 +134,10 @@ std::span<Key<CycleCosts> const> cycle_keys() {
         K{"shift", &CycleCosts::shift, most, "cycles", "A shift by 0 bits or 1."},
         K{"shift_further_bit", &CycleCosts::shift_further_bit, between(0, 1000), "cycles",
           "Each further bit of a shift."},
-        K{"load", &CycleCosts::load, most, "cycles", ""},
-        K{"store", &CycleCosts::store, most, "cycles", ""},
-        K{"multiply", &CycleCosts::multiply, most, "cycles", ""},
-        K{"divide", &CycleCosts::divide, most, "cycles", ""},
+        K{"load", &CycleCosts::load, most, "cycles", "Reading memory: lb, lh, lw."},
+        K{"store", &CycleCosts::store, most, "cycles", "Writing memory: sb, sh, sw."},
+        K{"multiply", &CycleCosts::multiply, most, "cycles", "mul, mulh."},
+        K{"divide", &CycleCosts::divide, most, "cycles", "div, rem."},
         K{"jump", &CycleCosts::jump, most, "cycles", "jal."},
         K{"jump_register", &CycleCosts::jump_register, most, "cycles", "jalr, as at the end of a function."},
         K{"branch_predicted_taken", &CycleCosts::branch_predicted_taken, most, "cycles",

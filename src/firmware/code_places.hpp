@@ -32,7 +32,7 @@ public:
 
     std::uint32_t word_of(std::uint32_t address) const { return (address - address_) / 4; }
 
-    // Of an instruction: the number of its chain, and of its line.
+    // The numbers of an instruction's chain and line.
     std::uint32_t chain_of(std::uint32_t address) const { return chain_of_[(address - address_) / 4]; }
     std::uint32_t line_of(std::uint32_t address) const { return line_of_[(address - address_) / 4]; }
 

@@ -41,7 +41,7 @@ CallOutcome has_no_input(FirmwareCall& call) {
 
 /// Nothing is ever typed.
 CallOutcome wait_for_input(FirmwareCall& call) {
-    call.note_slip("the terminal", "somebody who types", "the robot waits for ever", "not simulated");
+    call.note_slip("the terminal", "a key to be typed", "the robot waits for ever", "not simulated");
     return CallOutcome::ends;
 }
 

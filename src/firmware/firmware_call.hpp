@@ -94,8 +94,8 @@ struct FirmwareCall {
     }
 };
 
-/// How calls count that may be in a loop that waits, see kFreeCalls. At the start of a program, before its main loop, it
-/// waits only for inputs, not for the clock.
+/// How calls count that may be in a loop that waits, see kFreeCalls. Before its main loop begins, a program waits only
+/// for inputs, not for the clock.
 enum class Noted : std::uint8_t { as_call, as_clock, at_line_end };
 
 /// What a function does with the stopwatch that is its first argument, by which the ticks of a main loop are known.

@@ -28,7 +28,8 @@ public:
     void note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, double clock_us) override;
     void note_call(std::uint32_t robot, std::uint32_t address, double time_us) override;
 
-    /// Writes it as JSON, see python/pogosim/firmware/profile. Throws OutputError; ConfigError if no robot runs firmware.
+    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. Throws OutputError; ConfigError if no robot runs
+    /// firmware.
     void write(std::string const& file) const;
 
 private:
@@ -91,7 +92,7 @@ private:
         std::uint32_t highest_heap = 0;
         int ticks_begun = 0;
         Tick tick{};
-        // Of this tick, which count when it has ended: by path, and by line.
+        // Costs in this tick, by path and by line, which count when it has ended.
         std::vector<Cost> path_costs{};
         std::vector<std::uint32_t> used_paths{};
         std::vector<Cost> line_costs{};

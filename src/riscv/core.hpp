@@ -50,8 +50,8 @@ struct Stop {
 /// instruction at pc, where it stops, has had no effect and has taken no cycle: a caller may do its work, and go on at
 /// another pc.
 ///
-/// Of the control and status registers, there is the counter of cycles (cycle, mcycle, and their upper halves). All
-/// others read as 0, and what is written to them is lost: there are no interrupts that they could set up.
+/// The only control and status registers are the counter of cycles (cycle, mcycle, and their upper halves). All others
+/// read as 0, and what is written to them is lost: there are no interrupts that they could set up.
 Stop run(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles);
 
 }  // namespace pogosim

@@ -44,7 +44,7 @@ enum class FirmwareRandom : std::uint8_t {
     simulator  // those of a program in C: each robot has a stream of its own, set by the seed of the run
 };
 
-/// `brain: FILE.elf`, or `brain: {firmware: FILE.elf}`: the machine code of a program, as the robots' compiler makes it.
+/// `brain: FILE.elf`, or `brain: {firmware: FILE.elf}`: a program's machine code, as the robots' compiler makes it.
 struct FirmwareSpec {
     std::string file;
     FirmwareRandom random = FirmwareRandom::own;

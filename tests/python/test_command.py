@@ -17,6 +17,7 @@ SUBCOMMANDS = (
     "new",
     "run",
     "profile",
+    "compare-brains",
     "batch",
     "optimize",
     "analyze",
@@ -209,7 +210,7 @@ def test_run_warns_of_shared_variables_and_gives_the_exit_code(tmp_path: Path) -
     [
         (["nothing"], "there is no project, source file or program nothing"),
         (["folder"], "folder is not a project: it has no Makefile (pogosim new NAME makes a project)"),
-        (["text"], "text is neither a folder, a .c or .cpp file, nor a program"),
+        (["text"], "text is neither a folder, a .c or .cpp file, a firmware, nor a program"),
     ],
 )
 def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_path: Path) -> None:
@@ -218,13 +219,25 @@ def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_pat
     assert refusal(command(tmp_path, "run", *arguments)) == f"pogosim run: {said}"
 
 
-@pytest.mark.parametrize("arguments", [(), ("-c", "conf.yaml")])
-def test_run_without_a_program_says_how_to_name_one(arguments: tuple[str, ...], tmp_path: Path) -> None:
-    said = refusal(command(tmp_path, "run", *arguments))
+def test_run_without_a_program_says_how_to_name_one(tmp_path: Path) -> None:
+    said = refusal(command(tmp_path, "run"))
     assert said.startswith(
         "pogosim run: no program is named, and this folder is not a project: it has no Makefile. Name"
     )
-    assert said.endswith("(brain: host, or a script) runs in Python: pogosim.Simulation(None, CONFIG)")
+    assert said.endswith("a program or a firmware first (pogosim new NAME makes a project)")
+
+
+def test_run_without_a_program_runs_what_needs_none(tmp_path: Path) -> None:
+    robots = (
+        "{type: pogobot, nb: 2, geometry: disk, radius: 26.5, brain: {script: [{time_s: 0, motors: [500, 500, 0]}]}}"
+    )
+    (tmp_path / "conf.yaml").write_text(
+        f"arena_file: arenas/disk.csv\narena_surface: 1.0e6\nsimulation_time: 1\nobjects:\n  robots: {robots}\n"
+    )
+    assert command(tmp_path, "run", "-c", "conf.yaml", "-g").code == 0
+    (tmp_path / "conf.yaml").write_text((tmp_path / "conf.yaml").read_text().replace("brain:", "parameters_of_no_use:"))
+    said = refusal(command(tmp_path, "run", "-c", "conf.yaml", "-g"))
+    assert "category 'robots' needs a program, and none is given" in said
 
 
 def test_missing_compiler_is_one_line(tmp_path: Path) -> None:

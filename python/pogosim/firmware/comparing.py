@@ -22,7 +22,7 @@ class Difference:
     """Where a robot's program and its firmware differ first in one variable.
 
     Attributes:
-        time_s: Of the step after which they differ.
+        time_s: Time after the step that made them differ.
         tick: `pogobot_ticks` of the robot in the run of the program.
         robot: Its id.
         name: "mydata.count", "leds", ...

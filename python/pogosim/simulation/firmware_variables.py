@@ -80,7 +80,7 @@ def _of_version(file: Path, version: tuple[int, ...]) -> dict[str, Variable]:  #
 
 
 def variables_of(file: Path) -> dict[str, Variable]:
-    """Return the variables of a firmware by name; `mydata` is USERDATA. Of those with one name, it is the first one.
+    """Return the variables of a firmware by name; `mydata` is USERDATA. If several have a name, it is the first one.
 
     Raises:
         SimulationError: The file cannot be read, or has no debug information.
