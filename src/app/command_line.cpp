@@ -64,6 +64,16 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->type_name("N")
         ->check(CLI::Range(1U, 100'000U))
         ->needs(profile);
+    CLI::Option* const gdb = app.add_option("--gdb", options.gdb_port,
+                                            "debug a robot that runs firmware: wait for gdb on this port of this "
+                                            "machine; 0: one that is free")
+                                 ->type_name("PORT")
+                                 ->check(is_port)
+                                 ->excludes(profile);
+    app.add_option("--gdb-robot", options.gdb_robot, "with --gdb: the id of the robot; else the first with firmware")
+        ->type_name("ID")
+        ->check(is_seed)
+        ->needs(gdb);
     app.add_option("--video", options.video, "make a film of the run (.mp4, .webm or .gif), with ffmpeg")
         ->type_name("FILE")
         ->check(is_not_empty);

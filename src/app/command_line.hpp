@@ -22,10 +22,12 @@ struct CommandLine {
     bool check_config = false;   // nothing is run
     std::string picture;         // file of a picture of the start, with check_config; empty: none
     std::optional<std::uint32_t> seed;
-    std::string video;                   // file of a film; empty: none
-    std::string profile;                 // file of a profile of robots' firmware; empty: none
-    std::uint32_t profile_robots = 1;    // how many robots are in it
-    std::string firmware;                // that drives robots in the place of the program; empty: none does
+    std::string video;                 // file of a film; empty: none
+    std::string profile;               // file of a profile of robots' firmware; empty: none
+    std::uint32_t profile_robots = 1;  // how many robots are in it
+    std::string firmware;              // that drives robots in the place of the program; empty: none does
+    std::optional<int> gdb_port{};     // debug a robot that runs firmware
+    std::optional<std::uint32_t> gdb_robot{};
     std::int64_t hash_period_steps = 0;  // 0: no hashes
     std::vector<std::string> overrides;  // --set, in order
 };

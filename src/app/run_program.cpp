@@ -222,6 +222,8 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .strict = options.strict,
                            .conversions = conversions(options),
                            .hash_period_steps = options.hash_period_steps,
+                           .gdb_port = options.gdb_port,
+                           .gdb_robot = options.gdb_robot,
                            .film = options.video,
                            .profile = options.profile,
                            .profile_robots = options.profile_robots,

@@ -166,6 +166,9 @@ void FirmwareBrain::run_part(WorkRange range) {
     part.failure.reset();
     for (std::uint32_t i = range.first; i < range.last && !part.failure; ++i) {
         std::uint32_t const robot = range_.first + i;
+        if (is_observed(robot)) {
+            services_.observer->look(robot, robots_[i].core, robots_[i].memory, program_->firmware.code);
+        }
         if (world_.devices.clock_us[robot] <= step_us_) {
             run_robot(robot, part);
         }
@@ -199,6 +202,9 @@ void FirmwareBrain::run_robot(std::uint32_t robot, Part& part) {
         part.failure = failure_of(call, text_of(wrong));
     } catch (Failed const& failed) {
         part.failure = failed.failure;
+    }
+    if (part.failure && is_observed(robot)) {
+        services_.observer->show_failure(robot, self.core, self.memory, program_->firmware.code);
     }
     if (program_->ticks) {
         world_.devices.ticks[robot] = variable<4>(self.memory, *program_->ticks);
@@ -244,14 +250,14 @@ void FirmwareBrain::count_time(FirmwareCall& call) const {
     call.time_us = 0.0;
 }
 
-bool FirmwareBrain::is_observed(FirmwareCall const& call) const {
-    return services_.observer != nullptr && services_.observer->observes(call.robot);
+bool FirmwareBrain::is_observed(std::uint32_t robot) const {
+    return services_.observer != nullptr && services_.observer->observes(robot);
 }
 
 Stop FirmwareBrain::run_core(FirmwareCall& call, std::uint64_t most_cycles) const {
     FirmwareRobot& self = call.self;
     Code const& code = program_->firmware.code;
-    if (!is_observed(call)) [[likely]] {
+    if (!is_observed(call.robot)) [[likely]] {
         return run(self.core, self.memory, code, most_cycles);
     }
     double const clock_us = static_cast<double>(call.clock_us()) + self.rest_us;
@@ -307,7 +313,7 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     self.tick_step = world_.step;
     self.calls = 0;
     self.went_on_us = call.clock_us();
-    if (is_observed(call)) {
+    if (is_observed(call.robot)) {
         constexpr int usual_hz = 60;
         int const hz = program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
         services_.observer->note_tick(call.robot, call.ticks(), hz,
@@ -359,7 +365,7 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
         return self.is_starting && !self.is_restart_due;
     }
     call.time_us += static_cast<double>(call.times.*function.time);
-    if (is_observed(call)) {
+    if (is_observed(call.robot)) {
         services_.observer->note_call(call.robot, self.core.pc, call.time_us);
     }
     self.core.pc = self.core.x[kReturnAddress];

@@ -72,7 +72,7 @@ private:
     bool note_call(FirmwareCall& call, LibraryFunction const& function) const;
     std::uint64_t budget(FirmwareCall const& call, std::uint64_t waited_cycles) const;
     Stop run_core(FirmwareCall& call, std::uint64_t most_cycles) const;
-    bool is_observed(FirmwareCall const& call) const;
+    bool is_observed(std::uint32_t robot) const;
     void check_stack(FirmwareCall& call) const;
     void count_time(FirmwareCall& call) const;
     bool is_ahead(FirmwareCall const& call) const;

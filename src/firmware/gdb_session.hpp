@@ -20,6 +20,7 @@
 #include "firmware/gdb_protocol.hpp"
 #include "firmware/gdb_server.hpp"
 #include "firmware/gdb_target.hpp"
+#include "firmware/observer.hpp"
 #include "riscv/core.hpp"
 
 namespace pogosim {
@@ -36,7 +37,7 @@ struct GdbRobot {
     std::function<void()> end_run = [] {};                     // after the present step
 };
 
-class GdbSession final : private GdbTarget {
+class GdbSession final : public FirmwareObserver, private GdbTarget {
 public:
     /// Listens; see GdbServer for the port and its errors.
     GdbSession(GdbRobot robot, int port);
@@ -47,6 +48,18 @@ public:
 
     std::uint32_t robot() const { return robot_.index; }
     std::uint16_t port() const { return server_.port(); }
+
+    bool observes(std::uint32_t robot) const override { return robot == robot_.index; }
+    Stop run(std::uint32_t /*robot*/, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
+             double /*clock_us*/) override {
+        return run(core, memory, code, most_cycles);
+    }
+    void look(std::uint32_t /*robot*/, Core& core, Memory& memory, Code const& code) override {
+        look(core, memory, code);
+    }
+    void show_failure(std::uint32_t /*robot*/, Core& core, Memory& memory, Code const& code) override {
+        show_failure(core, memory, code);
+    }
 
     /// As run() of riscv/core.hpp, for the robot that is debugged. The first call waits for gdb. A fault is shown to
     /// gdb, and is returned only if the robot gets to it once more when gdb lets it go on.

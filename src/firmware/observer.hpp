@@ -23,6 +23,12 @@ public:
     virtual Stop run(std::uint32_t robot, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
                      double clock_us) = 0;
 
+    /// Before each of its steps, whether the robot runs in it or not.
+    virtual void look(std::uint32_t /*robot*/, Core& /*core*/, Memory& /*memory*/, Code const& /*code*/) {}
+
+    /// The robot cannot go on.
+    virtual void show_failure(std::uint32_t /*robot*/, Core& /*core*/, Memory& /*memory*/, Code const& /*code*/) {}
+
     /// A tick of its main loop begins, after so many, of which there should be `loop_hz` each second.
     virtual void note_tick(std::uint32_t /*robot*/, std::uint32_t /*ticks*/, int /*loop_hz*/, double /*clock_us*/) {}
 

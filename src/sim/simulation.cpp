@@ -26,6 +26,7 @@
 #include "robot/running_robot.hpp"
 #include "sim/build_world.hpp"
 #include "sim/check_motion.hpp"
+#include "sim/gdb_of_run.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_brains.hpp"
 #include "sim/progress_bar.hpp"
@@ -386,7 +387,10 @@ std::optional<UserFailure> Simulation::call_brains(bool (Brain::*part)()) {
 }
 
 /// A profile counts time, whatever the configuration says.
-void Simulation::make_profile() {
+void Simulation::make_observer() {
+    if (options_.gdb_port) {
+        observer_ = gdb_of_run(world_, {*options_.gdb_port, options_.gdb_robot, services_.stop_requested});
+    }
     if (options_.profile.empty()) {
         return;
     }
@@ -401,7 +405,7 @@ void Simulation::make_profile() {
 }
 
 FirmwareServices Simulation::firmware_services() {
-    make_profile();
+    make_observer();
     return {.seed = seed_,
             .timeout_s = scenario_.user_code_timeout_s,
             .workers = &workers_,

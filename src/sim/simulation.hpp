@@ -54,7 +54,7 @@ struct RunOptions {
     std::string film{};                              // file of a film of the run; empty: none
     std::string profile{};                           // file of a profile of robots' firmware; empty: none
     std::uint32_t profile_robots = 1;                // how many robots are in it
-    std::optional<std::uint16_t> gdb_port{};         // at which a debugger looks at a robot's firmware; absent: none
+    std::optional<int> gdb_port{};                   // at which gdb looks at a robot's firmware; absent: it does not
     std::optional<std::uint32_t> gdb_robot{};        // id; absent: the first one that runs firmware
     bool window = false;
     bool close_at_end = false;           // else the window stays open when the simulated time is over
@@ -210,7 +210,7 @@ private:
 
     std::optional<UserFailure> run_steps();
     std::optional<UserFailure> call_brains(bool (Brain::*part)());
-    void make_profile();
+    void make_observer();
     FirmwareServices firmware_services();
     void fit_time_step();
     void open_window();
