@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kHighestPort = 65535;
 constexpr int kLongestSendMs = 5000;
-constexpr int kLongestEndMs = 1000;
+constexpr int kLongestEndMs = 250;
 constexpr int kWaitMs = 50;
 
 #ifdef MSG_NOSIGNAL

@@ -11,6 +11,7 @@
 
 #include "base/escaped.hpp"
 #include "base/log.hpp"
+#include "firmware/firmware_program.hpp"
 #include "riscv/memory_image.hpp"
 
 namespace pogosim {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kWaitMs = 100;                            // between looks at Ctrl-C in the simulator's terminal
 constexpr std::uint64_t kCyclesBetweenLooks = 500'000;  // at Ctrl-C of gdb, of a robot that does not call the library
+constexpr std::uint32_t kReturn = 0x00008067;           // ret
 constexpr std::size_t kMostBreakpoints = 1024;
 constexpr std::size_t kMostWatchpoints = 64;
 
@@ -251,7 +253,9 @@ std::optional<GdbPoint> GdbSession::changed_point() const {
 void GdbSession::renew_watched() {
     for (Watched& watched : watched_) {
         watched.before.resize(watched.point.bytes);
-        watched.before.resize(read_memory(watched.point.address, watched.before));
+        if (memory_->read(watched.point.address, watched.before).fault != AccessFault::none) {
+            watched.before.clear();  // which never change
+        }
     }
 }
 
@@ -372,11 +376,28 @@ void GdbSession::write_register(std::size_t number, std::uint32_t value) {
 
 std::size_t GdbSession::read_memory(std::uint32_t address, std::span<std::byte> bytes) const {
     Memory::Copied const copied = memory_->read(address, bytes);
-    if (copied.fault == AccessFault::none) {
-        return bytes.size();
+    if (copied.fault != AccessFault::none) {
+        bytes = bytes.first(std::min<std::size_t>(copied.address - address, bytes.size()));
+        if (memory_->read(address, bytes).fault != AccessFault::none) {
+            return 0;
+        }
     }
-    std::span<std::byte> const there = bytes.first(std::min<std::size_t>(copied.address - address, bytes.size()));
-    return memory_->read(address, there).fault == AccessFault::none ? there.size() : 0;
+    show_library_as_returns(address, bytes);
+    return bytes.size();
+}
+
+/// For RISC-V, gdb makes a step by a breakpoint at the instruction that comes next, for which it decodes the one at pc.
+/// What it must find at a function of the library is what becomes of the robot there: it returns.
+void GdbSession::show_library_as_returns(std::uint32_t address, std::span<std::byte> bytes) const {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        std::uint32_t const offset = address + static_cast<std::uint32_t>(i) - code_->address;
+        bool const is_library = offset < code_->bytes() &&
+                                code_->steps[offset / 4].operation == Operation::intercepted &&
+                                intercepted_number(*code_, code_->address + offset / 4 * 4) != kEndlessLoop;
+        if (is_library) {
+            bytes[i] = static_cast<std::byte>(kReturn >> (8 * (offset % 4)));
+        }
+    }
 }
 
 /// Not to code, which has been decoded: what gdb would see there is not what runs.

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,7 @@ private:
     std::optional<GdbPoint> changed_point() const;
     void renew_watched();
     Code const& code_with_breakpoints();
+    void show_library_as_returns(std::uint32_t address, std::span<std::byte> bytes) const;
 
     // What gdb sees: the robot that runs, or stands still, now.
     std::uint32_t read_register(std::size_t number) const override;
