@@ -21,6 +21,13 @@ std::string is_seed(std::string const& text) {
     return fits ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
 }
 
+/// Empty for a port of gdb, otherwise an error message.
+std::string is_port(std::string const& text) {
+    bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    bool const fits = digits && text.size() <= 5 && std::stoul(text) <= std::numeric_limits<std::uint16_t>::max();
+    return fits ? "" : "expected a port from 1 to 65535, or 0 for one that is free, found '" + text + "'";
+}
+
 std::string is_not_empty(std::string const& text) {
     return text.empty() ? "expected the name of a file, found ''" : "";
 }
