@@ -7,14 +7,21 @@ Needs ./build.sh and the robots' compiler (gcc-riscv64-unknown-elf, picolibc-ris
 
 from __future__ import annotations
 
+import argparse
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 
-import yaml
-from pogosim.firmware.making import firmware_of
-from pogosim.installation import find_installation
+try:
+    import yaml
+    from pogosim.errors import ToolError
+    from pogosim.firmware.making import firmware_of
+    from pogosim.installation import find_installation
+except ImportError as missing:
+    print(f"firmware.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
 
 ROBOTS = 100
 INSTRUCTIONS = 5000  # of a tick, about
@@ -35,8 +42,12 @@ int main(void) {{
 """
 
 
-def main() -> None:
-    """Measure, and print a line for each way to count time."""
+def measure() -> None:
+    """Print a line for each way to count time.
+
+    Raises:
+        ToolError: The simulator or the robots' compiler is missing.
+    """
     pogosim = find_installation()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -70,5 +81,16 @@ def main() -> None:
                 )
 
 
+def main() -> int:
+    """Run the command line; returns the exit code."""
+    argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0]).parse_args()
+    try:
+        measure()
+    except ToolError as error:
+        print(f"firmware.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

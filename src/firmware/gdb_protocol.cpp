@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <system_error>
 #include <utility>
 #include <vector>
 

@@ -228,14 +228,14 @@ def test_run_without_a_program_says_how_to_name_one(tmp_path: Path) -> None:
 
 
 def test_run_without_a_program_runs_what_needs_none(tmp_path: Path) -> None:
-    robots = (
-        "{type: pogobot, nb: 2, geometry: disk, radius: 26.5, brain: {script: [{time_s: 0, motors: [500, 500, 0]}]}}"
+    brain = ", brain: {script: [{time_s: 0, motors: [500, 500, 0]}]}"
+    scene = (
+        "arena_file: arenas/disk.csv\narena_surface: 1.0e6\nsimulation_time: 1\nobjects:\n"
+        f"  robots: {{type: pogobot, nb: 2, geometry: disk, radius: 26.5{brain}}}\n"
     )
-    (tmp_path / "conf.yaml").write_text(
-        f"arena_file: arenas/disk.csv\narena_surface: 1.0e6\nsimulation_time: 1\nobjects:\n  robots: {robots}\n"
-    )
+    (tmp_path / "conf.yaml").write_text(scene)
     assert command(tmp_path, "run", "-c", "conf.yaml", "-g").code == 0
-    (tmp_path / "conf.yaml").write_text((tmp_path / "conf.yaml").read_text().replace("brain:", "parameters_of_no_use:"))
+    (tmp_path / "conf.yaml").write_text(scene.replace(brain, ""))
     said = refusal(command(tmp_path, "run", "-c", "conf.yaml", "-g"))
     assert "category 'robots' needs a program, and none is given" in said
 

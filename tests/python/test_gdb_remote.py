@@ -160,7 +160,9 @@ def test_mistakes_get_one_line(arguments: list[str], message: str, firmware: Pat
 
 
 def test_robots_without_firmware_are_not_debugged(tmp_path: Path) -> None:
-    result = run(without_program(), tmp_path, {OF_ROBOTS: {"script": [{"time_s": 0, "led": [1, 2, 3]}]}}, ["--gdb", "0"])
+    result = run(
+        without_program(), tmp_path, {OF_ROBOTS: {"script": [{"time_s": 0, "led": [1, 2, 3]}]}}, ["--gdb", "0"]
+    )
     assert result.code == 2
     assert "--gdb: no robot runs firmware" in result.errors
 
