@@ -229,6 +229,19 @@ void check_light_levels(Scenario const& scenario) {
     }
 }
 
+/// Warns of code that is to take time, but is not that of a robot's processor.
+void check_cpu_time(Scenario const& scenario) {
+    for (ObjectConfig const& object : scenario.objects) {
+        bool const is_counted = object.spec.robot && object.spec.robot->cpu_time == CpuTime::counted;
+        if (is_counted && object.nb > 0 && !std::holds_alternative<FirmwareSpec>(object.spec.robot->brain)) {
+            log().warn(
+                "{}: objects.{}.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware FILE); "
+                "the code of these robots takes no time",
+                object.line, shown(object.category));
+        }
+    }
+}
+
 /// Warns of robots that would never do anything.
 void check_scripts(Scenario const& scenario) {
     for (ObjectConfig const& object : scenario.objects) {
@@ -284,6 +297,7 @@ void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& r
         collect([&] { check_object_count(scenario); });
         collect([&] { check_recorded_categories(scenario); });
         collect([&] { check_light_levels(scenario); });
+        collect([&] { check_cpu_time(scenario); });
         collect([&] { check_scripts(scenario); });
     }
     collect([&] { check_file_names(scenario); });

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
@@ -53,6 +56,16 @@ std::string json_list(List const& list, Text const& text_of) {
 }
 
 }  // namespace
+
+Profile::Profile(std::string file, std::uint32_t robots) : file_(std::move(file)), most_robots_(robots) {
+    if (!std::ofstream(file_, std::ios::binary | std::ios::app)) {  // before a run that would be in vain
+        throw OutputError(fmt::format("cannot write the profile {}", escaped(file_)));
+    }
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file_, ignored) && std::filesystem::file_size(file_, ignored) == 0) {
+        std::filesystem::remove(file_, ignored);
+    }
+}
 
 void Profile::add(World const& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> const& program) {
     if (program_ && program_ != program) {
@@ -244,10 +257,13 @@ void Profile::note_call(std::uint32_t robot, std::uint32_t address, double time_
     }
 }
 
-void Profile::write(std::string const& file) const {
+void Profile::check() const {
     if (!program_) {
-        throw ConfigError("profile: no robot of the configuration runs firmware; name one with --firmware FILE");
+        throw ConfigError("--profile: no robot of the configuration runs firmware; name one with --firmware FILE");
     }
+}
+
+void Profile::write() const {
     auto const frames_of = [this](std::uint32_t path) {
         std::vector<std::uint32_t> frames;
         for (; path != 0; path = paths_[path].parent) {
@@ -272,7 +288,7 @@ void Profile::write(std::string const& file) const {
         deepest = std::max(deepest, robot.lowest_stack > memory_end ? 0 : memory_end - robot.lowest_stack);
         heap = std::max(heap, robot.highest_heap > end ? robot.highest_heap - end : 0);
     }
-    std::ofstream out(file, std::ios::binary);
+    std::ofstream out(file_, std::ios::binary);
     out << fmt::format(
         "{{\"version\": 1,\n\"firmware\": {},\n\"clock_hz\": {}, \"cycle_factor\": {}, \"loop_hz\": {},\n"
         "\"memory_bytes\": {}, \"program_bytes\": {}, \"variable_bytes\": {},\n"
@@ -322,7 +338,7 @@ void Profile::write(std::string const& file) const {
         << "}\n";
     out.close();
     if (!out) {
-        throw OutputError(fmt::format("cannot write the profile {}", escaped(file)));
+        throw OutputError(fmt::format("cannot write the profile {}", escaped(file_)));
     }
 }
 

@@ -16,8 +16,9 @@ namespace pogosim {
 
 class Profile final : public FirmwareObserver {
 public:
-    /// Observes the first `robots` robots that run firmware, all with the one of the first.
-    explicit Profile(std::uint32_t robots) : most_robots_(robots) {}
+    /// Observes the first `robots` robots that run firmware, all with the one of the first. Throws OutputError if the
+    /// file cannot be written.
+    Profile(std::string file, std::uint32_t robots);
 
     /// A category runs this firmware.
     void add(World const& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> const& program);
@@ -28,9 +29,11 @@ public:
     void note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, double clock_us) override;
     void note_call(std::uint32_t robot, std::uint32_t address, double time_us) override;
 
-    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. Throws OutputError; ConfigError if no robot runs
-    /// firmware.
-    void write(std::string const& file) const;
+    /// Throws ConfigError if no robot runs firmware.
+    void check() const;
+
+    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. Throws OutputError.
+    void write() const;
 
 private:
     struct Cost {
@@ -109,6 +112,7 @@ private:
     void note_memory(Robot& self, Step const& step, Core const& core) const;
     void end_span(Frame const& frame, double now_us);
 
+    std::string file_;
     std::uint32_t most_robots_;
     std::shared_ptr<FirmwareProgram const> program_;
     std::unique_ptr<CodePlaces> places_;

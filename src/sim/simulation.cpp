@@ -113,6 +113,9 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
             profile_->add(world_, firmware->category(), firmware->program());
         }
     }
+    if (profile_ != nullptr) {
+        profile_->check();
+    }
     auto native = std::make_unique<NativeProgram>(controllers_, crash_handler_, workers_);
     program_ = native.get();
     brains_.insert(brains_.begin(), std::move(native));
@@ -227,7 +230,7 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     }
     bool const all_pictures_written = finish();
     if (profile_ != nullptr) {
-        profile_->write(options_.profile);
+        profile_->write();
     }
     controllers_.warn_of_unreturned_calls_at_end();
     controllers_.tell_at_end(channel_.receptions());
@@ -394,7 +397,7 @@ void Simulation::make_observer() {
     if (options_.profile.empty()) {
         return;
     }
-    auto profile = std::make_unique<Profile>(options_.profile_robots);
+    auto profile = std::make_unique<Profile>(options_.profile, options_.profile_robots);
     profile_ = profile.get();
     observer_ = std::move(profile);
     for (Category& category : world_.categories) {

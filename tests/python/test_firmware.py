@@ -643,3 +643,12 @@ def test_firmware_in_use_is_not_overwritten(swarm: Path, tmp_path: Path) -> None
     result = run_firmware(Path("robot.elf"), tmp_path, {"data_filename": "robot.elf"})
     assert result.code == 2
     assert (tmp_path / "robot.elf").read_bytes() == swarm.read_bytes()
+
+
+def test_time_of_a_program_that_is_no_firmware_is_not_counted_in_silence(tmp_path: Path) -> None:
+    program = compile_text(tmp_path, text())
+    (said,) = warnings(run(program, tmp_path, {"objects.robots.cpu_time": "counted"}))
+    assert said.endswith(
+        "objects.robots.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware FILE); the "
+        "code of these robots takes no time"
+    )
