@@ -148,6 +148,15 @@ void check_needs_no_host(Scenario const& scenario) {
     }
 }
 
+/// A profile must not take the place of another file of the run.
+void check_profile_file(Scenario const& scenario, CommandLine const& options) {
+    if (!options.profile.empty() && is_used_file(scenario, options.video, options.profile.c_str())) {
+        throw ConfigError(
+            fmt::format("--profile would overwrite '{}', which the run needs or writes; choose another file",
+                        escaped(options.profile)));
+    }
+}
+
 /// A program that has nothing to do was perhaps to do something.
 void tell_of_idle_program(Scenario const& scenario) {
     auto const& objects = scenario.objects;
@@ -157,8 +166,12 @@ void tell_of_idle_program(Scenario const& scenario) {
         return object.spec.robot && object.nb > 0 && needs_program(object.spec.robot->brain);
     });
     if (has_robots && is_idle) {
-        log().info(
-            "no category needs the program: other brains drive all robots (brain: a firmware, or {script: ...})");
+        bool const has_firmware = std::ranges::any_of(objects, [](ObjectConfig const& object) {
+            return object.spec.robot && std::holds_alternative<FirmwareSpec>(object.spec.robot->brain);
+        });
+        log().info("no category needs the program: {}", has_firmware
+                                                            ? "firmware or scripts drive all robots"
+                                                            : "all robots follow scripts (brain: {script: ...})");
     }
 }
 
@@ -204,6 +217,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     }
     check_needs_no_host(scenario);
     check_used_files(scenario, options.video);
+    check_profile_file(scenario, options);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {
         logging.file = scenario.output.console_filename;

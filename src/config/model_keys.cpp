@@ -118,7 +118,7 @@ std::span<Key<ProcessorSpec> const> processor_keys() {
         K{"memory_bytes", &ProcessorSpec::memory_bytes, between(1024, 4e9), "bytes",
           "Memory of a firmware for program, variables, stack and what it allocates. For a program in C, warnings say "
           "when it would not be enough."},
-        K{"cycle_factor", &ProcessorSpec::cycle_factor, above(0).up_to(1000), "",
+        K{"cycle_factor", &ProcessorSpec::cycle_factor, between(1e-3, 1000), "",
           "By which all cycles are multiplied, to fit a measurement on a robot."},
         K{"cycles", Elsewhere{kCycles}, any(), "", "How many cycles instructions take; see its table."},
         K{"call_times", Elsewhere{kCallTimes}, any(), "", "How long functions of the library take; see its table."},

@@ -88,10 +88,10 @@ private:
     /// Calls see(word) for each word of code between two addresses.
     template <class See>
     void for_each_word(Dwarf_Addr begin, Dwarf_Addr end, See const& see) const {
-        for (Dwarf_Addr address = begin; address < end; address += 4) {
-            if (places_.is_code(static_cast<std::uint32_t>(address))) {
-                see((static_cast<std::uint32_t>(address) - places_.address_) / 4);
-            }
+        Dwarf_Addr const code_end = Dwarf_Addr{places_.address_} + 4 * places_.chain_of_.size();
+        end = std::min(end, code_end);
+        for (Dwarf_Addr address = std::max<Dwarf_Addr>(begin, places_.address_); address < end; address += 4) {
+            see((static_cast<std::uint32_t>(address) - places_.address_) / 4);
         }
     }
 
@@ -110,7 +110,7 @@ private:
     /// The linker knows a function that stands alone: its chain begins with that name.
     void mark_function(Dwarf_Die& entry, std::optional<CodePlaces::Chain>& chain) {
         Dwarf_Addr begin = 0;
-        bool const is_there = dwarf_lowpc(&entry, &begin) == 0 && begin != 0;
+        bool const is_there = dwarf_entrypc(&entry, &begin) == 0 && begin != 0;
         if (is_there && places_.is_code(static_cast<std::uint32_t>(begin))) {
             chain = places_.chain(places_.chain_of(static_cast<std::uint32_t>(begin)));
             mark_lines(entry);

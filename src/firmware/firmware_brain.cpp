@@ -65,6 +65,7 @@ FirmwareBrain::FirmwareBrain(World& world, std::uint32_t category, std::shared_p
 FirmwareRobot FirmwareBrain::new_robot(std::uint32_t robot) const {
     FirmwareRobot self(program_->firmware.image);
     self.core.pc = program_->firmware.entry;
+    self.is_starting = program_->loop_timer.has_value();
     MemoryImage const& image = *program_->firmware.image;
     self.core.x[kStackPointer] = image.address + static_cast<std::uint32_t>(image.bytes.size());
     self.seeds = random_seeds(services_.seed, robot, id_on_air(world_.robots.id[robot]));
@@ -82,7 +83,28 @@ bool FirmwareBrain::run_step() {
     return run_all();
 }
 
+/// A robot whose tick does not end looks as if it had little to do.
+void FirmwareBrain::warn_of_endless_ticks() const {
+    constexpr std::int64_t long_us = 1'000'000;
+    constexpr double s_per_us = 1e-6;
+    std::uint32_t count = 0;
+    std::string first;
+    for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
+        FirmwareRobot const& self = this->robot(robot);
+        std::int64_t const since_us = time_us(world_) - self.went_on_us;
+        if (self.was_cut_off && program_->loop_timer && since_us > long_us && count++ == 0) {
+            first = fmt::format("robot #{} of category '{}' has been in tick {} for {:.1f} s, in {}",
+                                world_.robots.id[robot], world_.categories[category_].name, world_.devices.ticks[robot],
+                                s_per_us * static_cast<double>(since_us), place_in_firmware(*program_, self.core.pc));
+        }
+    }
+    if (count > 0) {
+        log().warn("{}, and the tick has not ended{}", first, count > 1 ? fmt::format(" ({} such robots)", count) : "");
+    }
+}
+
 bool FirmwareBrain::stop() {
+    warn_of_endless_ticks();
     for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
         FirmwareRobot& self = robots_[robot - range_.first];
         if (!self.printed.empty()) {
@@ -125,12 +147,28 @@ void FirmwareBrain::fill_row(std::uint32_t robot, std::span<CellValue> cells) co
     }
 }
 
+/// What the last tick has taken, without the time of library functions.
+std::string FirmwareBrain::load_text(FirmwareRobot const& self) const {
+    ProcessorSpec const& processor = spec_.model.processor;
+    double const taken_us = processor.us_of(static_cast<double>(self.tick_cycles));
+    int const hz = loop_hz_of(self);
+    constexpr double us_per_s = 1e6;
+    std::string const cycles = fmt::format("{} cycles in the last tick", self.tick_cycles);
+    return hz == 0 ? cycles : fmt::format("{:.2g} %, {}", 100.0 * taken_us * hz / us_per_s, cycles);
+}
+
+/// main_loop_hz of a robot; the usual value if the compiler has left that out because it never changes.
+int FirmwareBrain::loop_hz_of(FirmwareRobot const& self) const {
+    constexpr int usual_hz = 60;
+    return program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
+}
+
 NamedTexts FirmwareBrain::texts_of(std::uint32_t robot) const {
     if (robot < range_.first || robot >= range_.last) {
         return {};
     }
     FirmwareRobot const& self = this->robot(robot);
-    NamedTexts texts{{"(cycles of the last tick)", fmt::format("{}", self.tick_cycles)}};
+    NamedTexts texts{{"(processor load)", load_text(self)}};
     std::ranges::move(variables().texts(self.memory), std::back_inserter(texts));
     return texts;
 }
@@ -146,6 +184,9 @@ int FirmwareBrain::highest_loop_hz() const {
 }
 
 bool FirmwareBrain::run_all() {
+    if (range_.size() == 0) {
+        return true;
+    }
     WorkerPool& workers = *services_.workers;
     std::uint32_t const least = services_.observer != nullptr ? range_.size() : kLeastRobots;
     parts_.resize(workers.range_count(range_.size(), least));
@@ -175,14 +216,28 @@ void FirmwareBrain::run_part(WorkRange range) {
     }
 }
 
+/// Its processor is reset. What it has drawn as seeds, and printed, stays so.
+void FirmwareBrain::restart(std::uint32_t robot) {
+    FirmwareRobot& self = robots_[robot - range_.first];
+    FirmwareRobot anew = new_robot(robot);
+    anew.seeds = self.seeds;
+    anew.printed = std::move(self.printed);
+    self = std::move(anew);
+    reset_devices(world_, robot, step_us_);
+    if (is_observed(robot)) {
+        services_.observer->note_start(robot);
+    }
+}
+
 void FirmwareBrain::run_robot(std::uint32_t robot, Part& part) {
     FirmwareRobot& self = robots_[robot - range_.first];
     bool const restarts = self.is_restart_due;
     if (restarts) {
-        self = new_robot(robot);
-        reset_devices(world_, robot, step_us_);
+        restart(robot);
     }
-    measure_at_tick(world_, robot);
+    if (!std::exchange(self.was_cut_off, false)) {
+        measure_at_tick(world_, robot);
+    }
     if (!program_->loop_timer) {
         self.went_on_us = world_.devices.clock_us[robot];
     }
@@ -220,20 +275,40 @@ bool FirmwareBrain::is_ahead(FirmwareCall const& call) const {
     return call.clock_us() > step_us_;
 }
 
-/// Cycles that a robot may run before it has to be looked at.
-std::uint64_t FirmwareBrain::budget(FirmwareCall const& call, std::uint64_t waited_cycles) const {
+/// Cycles that a robot may run before it has to be looked at. `used`: those since it waited.
+std::uint64_t FirmwareBrain::budget(FirmwareCall const& call, std::uint64_t used) const {
+    constexpr std::uint64_t most = 20'000'000;  // after which the user may want the run to end
     FirmwareRobot const& self = call.self;
-    ProcessorSpec const& processor = spec_.model.processor;
-    if (spec_.cpu_time == CpuTime::counted && !self.is_starting) {
+    double const cycle_us = spec_.model.processor.us_of(1.0);
+    if (spec_.cpu_time == CpuTime::counted && !self.runs_ahead()) {
         double const left_us = static_cast<double>(step_us_ + 1 - call.clock_us()) - self.rest_us;
-        return static_cast<std::uint64_t>(std::max(1.0, std::ceil(left_us / processor.us_of(1.0))));
+        return static_cast<std::uint64_t>(std::clamp(std::ceil(left_us / cycle_us), 1.0, static_cast<double>(most)));
     }
-    if (services_.timeout_s == 0.0) {
-        return std::numeric_limits<std::uint64_t>::max() / 4;
+    std::uint64_t const limit = cycle_limit();
+    return limit == 0 ? most : std::min(most, limit - std::min(limit, used));
+}
+
+/// Cycles after which code that never waits ends the run; 0: it may run for ever.
+std::uint64_t FirmwareBrain::cycle_limit() const {
+    constexpr double us_per_s = 1e6;
+    constexpr double most = 1e18;
+    double const cycles = services_.timeout_s * us_per_s / spec_.model.processor.us_of(1.0);
+    return services_.timeout_s == 0.0 ? 0 : static_cast<std::uint64_t>(std::clamp(cycles, 1.0, most));
+}
+
+/// A robot has used its budget. Throws Failed if that was its last one.
+void FirmwareBrain::check_time(FirmwareCall const& call, std::uint64_t used) const {
+    bool const is_timed = spec_.cpu_time == CpuTime::counted && !call.self.runs_ahead();
+    std::uint64_t const limit = cycle_limit();
+    if (!is_timed && limit > 0 && used >= limit) {
+        throw Failed(failure_of(
+            call, fmt::format("it has run for {} s on the robot's processor without waiting", services_.timeout_s)));
     }
-    double const most = services_.timeout_s * static_cast<double>(processor.clock_hz);
-    double const used = static_cast<double>(self.core.cycles - waited_cycles);
-    return static_cast<std::uint64_t>(std::max(0.0, most - used));
+    if (services_.is_interrupted()) {
+        UserFailure failure = failure_of(call, "it was running");
+        failure.code = ExitCode::interrupted;
+        throw Failed(failure);
+    }
 }
 
 /// The clock of a robot whose code takes time goes on by that of its cycles, and of what its last call has taken.
@@ -271,15 +346,12 @@ void FirmwareBrain::go_on(FirmwareCall& call) const {
     std::uint64_t const waited_cycles = self.core.cycles;
     bool const is_timed = spec_.cpu_time == CpuTime::counted;
     for (bool goes_on = true; goes_on;) {
-        Stop const stop = run_core(call, budget(call, waited_cycles));
+        Stop const stop = run_core(call, budget(call, self.core.cycles - waited_cycles));
         count_time(call);
         if (stop.reason == StopReason::budget_used) {
-            if (!is_timed || self.is_starting) {
-                throw Failed(failure_of(
-                    call,
-                    fmt::format("it has run for {} s on the robot's processor without waiting", services_.timeout_s)));
-            }
-            goes_on = !is_ahead(call);
+            check_time(call, self.core.cycles - waited_cycles);
+            goes_on = !is_timed || self.runs_ahead() || !is_ahead(call);
+            self.was_cut_off = !goes_on;
         } else if (stop.reason == StopReason::intercepted) {
             std::int32_t const number = intercepted_number(code, stop.pc);
             self.has_ended = number == kEndlessLoop;
@@ -314,9 +386,7 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     self.calls = 0;
     self.went_on_us = call.clock_us();
     if (is_observed(call.robot)) {
-        constexpr int usual_hz = 60;
-        int const hz = program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
-        services_.observer->note_tick(call.robot, call.ticks(), hz,
+        services_.observer->note_tick(call.robot, call.ticks(), loop_hz_of(self),
                                       static_cast<double>(call.clock_us()) + self.rest_us);
     }
     return true;
@@ -354,8 +424,9 @@ void FirmwareBrain::check_stack(FirmwareCall& call) const {
 bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& function) const {
     FirmwareRobot& self = call.self;
     bool const is_of_loop = program_->loop_timer && call.argument(0) == *program_->loop_timer;
-    if ((is_ahead(call) && !self.is_starting) || !note_call(call, function) ||
-        (is_of_loop && function.use == StopwatchUse::resets && !begin_tick(call))) {
+    bool const begins_tick = is_of_loop && function.use == StopwatchUse::resets;
+    self.is_ending_tick = self.is_ending_tick && !begins_tick;
+    if ((is_ahead(call) && !self.runs_ahead()) || !note_call(call, function) || (begins_tick && !begin_tick(call))) {
         return false;
     }
     call.function = function.name;
@@ -377,10 +448,11 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
             drift_clock(world_, call.robot, self.went_on_us);
         }
         // After the sleep of the main loop, the rest of the tick goes on; in user_init, all does.
-        return ends_tick || (self.is_starting && program_->loop_timer) || !is_ahead(call);
+        self.is_ending_tick = ends_tick && !self.is_starting;
+        return self.runs_ahead() || !is_ahead(call);
     }
     self.has_ended = outcome == CallOutcome::ends;
-    bool const is_timed = spec_.cpu_time == CpuTime::counted && !self.is_starting;
+    bool const is_timed = spec_.cpu_time == CpuTime::counted && !self.runs_ahead();
     return !self.has_ended && !(is_timed && is_ahead(call));
 }
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct FirmwareServices {
     WorkerPool* workers = nullptr;
     FirmwareObserver* observer = nullptr;  // null: none looks on; else robots run in one thread
     std::function<void(std::uint32_t robot, std::string_view line)> print;  // a line that a robot has printed
+    std::function<bool()> is_interrupted = [] { return false; };            // the user wants the run to end
 };
 
 class FirmwareBrain final : public Brain {
@@ -70,7 +72,11 @@ private:
     bool begin_tick(FirmwareCall& call) const;
     bool make_call(FirmwareCall& call, LibraryFunction const& function) const;
     bool note_call(FirmwareCall& call, LibraryFunction const& function) const;
-    std::uint64_t budget(FirmwareCall const& call, std::uint64_t waited_cycles) const;
+    void restart(std::uint32_t robot);
+    void warn_of_endless_ticks() const;
+    std::uint64_t budget(FirmwareCall const& call, std::uint64_t used) const;
+    std::uint64_t cycle_limit() const;
+    void check_time(FirmwareCall const& call, std::uint64_t used) const;
     Stop run_core(FirmwareCall& call, std::uint64_t most_cycles) const;
     bool is_observed(std::uint32_t robot) const;
     void check_stack(FirmwareCall& call) const;
@@ -78,6 +84,8 @@ private:
     bool is_ahead(FirmwareCall const& call) const;
     void join(Part& part);
     FirmwareVariables const& variables() const;
+    std::string load_text(FirmwareRobot const& self) const;
+    int loop_hz_of(FirmwareRobot const& self) const;
     UserFailure failure_of(FirmwareCall const& call, std::string what) const;
 
     World& world_;

@@ -5,6 +5,8 @@
 
 namespace pogosim {
 
+static_assert(std::endian::native == std::endian::little);  // functions of the library copy numbers as they are
+
 std::uint32_t FirmwareCall::ticks() const {
     std::byte const* const place = program.ticks ? self.memory.readable<4>(*program.ticks) : nullptr;
     return place == nullptr ? 0 : read_little_endian<4>(place);

@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
@@ -21,6 +24,11 @@ namespace pogosim {
 namespace {
 
 std::vector<std::byte> bytes_of_file(std::string const& file) {
+    constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 28U;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > most_bytes) {
+        throw ConfigError(fmt::format("{}: is no firmware: expected an ELF file of up to 256 MiB", escaped(file)));
+    }
     std::ifstream stream(file, std::ios::binary);
     std::vector<char> const bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (stream.bad() || !stream.is_open()) {
@@ -46,12 +54,19 @@ void intercept_endless_loops(Code& code) {
     }
 }
 
+/// Whether a program is unlikely to have a function of its own by this name.
+bool is_name_of_library(std::string_view name) {
+    return name.starts_with("pogobot_") || name.starts_with("magn_") || name.ends_with("_flash") || name == "msleep";
+}
+
 void intercept_library(Firmware& firmware, FirmwareRandom random) {
     std::span const functions = library_functions();
     for (std::size_t i = 0; i < functions.size(); ++i) {
         FirmwareSymbol const* const symbol = firmware.find(functions[i].name);
         bool const is_wanted = !functions[i].is_random || random == FirmwareRandom::simulator;
-        if (symbol != nullptr && is_wanted) {
+        // When the library is optimised together with the program, its functions are those of one file, too.
+        bool const is_of_library = symbol != nullptr && (symbol->is_global || is_name_of_library(symbol->name));
+        if (is_of_library && is_wanted) {
             intercept(firmware.code, symbol->address, static_cast<std::int32_t>(i));
         }
     }
@@ -60,6 +75,10 @@ void intercept_library(Firmware& firmware, FirmwareRandom random) {
 }  // namespace
 
 bool is_firmware_file(std::string const& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) {
+        return false;
+    }
     constexpr std::string_view magic = "\177ELF";
     constexpr std::size_t machine_at = 18;
     constexpr char risc_v = '\xf3';

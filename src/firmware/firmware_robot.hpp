@@ -24,7 +24,9 @@ struct FirmwareRobot {
     int calls = 0;                     // since it slept, see note_call()
     std::int64_t tick_step = -1;       // step of the world in which its last tick began
     std::optional<bool> finds_data{};  // a call waits for data of the magnetometer, and will find some or not
-    bool is_starting = true;           // its main loop has not begun
+    bool is_starting = false;          // its main loop has not begun; false without one
+    bool is_ending_tick = false;       // its main loop has slept, and has not begun the next tick
+    bool was_cut_off = false;          // it has run for as long as it might, in the middle of its code
     int timer_resets = 0;              // of timer_main_loop while it is starting
     bool ends_tick = false;            // it has read timer_main_loop, and called nothing since
     bool has_noted_call = false;       // the call that it is about to make waits since it was noted
@@ -39,6 +41,9 @@ struct FirmwareRobot {
     // Where time is counted.
     std::uint64_t timed_cycles = 0;  // cycles of the core for which its clock has gone on
     double rest_us = 0.0;            // less than a microsecond, for which it has not
+
+    /// Whether it goes on though its clock is ahead of the run's.
+    bool runs_ahead() const { return is_starting || is_ending_tick; }
 
     explicit FirmwareRobot(std::shared_ptr<MemoryImage const> image) : memory(std::move(image)) {}
 };

@@ -172,7 +172,7 @@ ColumnType column_type_of(VariableType const& type) {
     if (type.kind == Kind::floating) {
         return type.bytes == sizeof(float) ? ColumnType::float32 : ColumnType::float64;
     }
-    bool const has_sign = type.kind == Kind::signed_number || type.kind == Kind::text || type.kind == Kind::enumeration;
+    bool const has_sign = type.kind == Kind::signed_number || type.kind == Kind::enumeration;  // char has none here
     std::size_t const bytes = has_sign ? type.bytes : 2 * type.bytes;
     return bytes <= 1   ? ColumnType::int8
            : bytes <= 2 ? ColumnType::int16
@@ -194,7 +194,6 @@ CellValue value_of(FirmwareVariable const& variable, Memory const& memory) {
                        ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
                        : std::bit_cast<double>(bits);
         case Kind::signed_number:
-        case Kind::text:
         case Kind::enumeration: {
             unsigned const unused = 64 - 8 * static_cast<unsigned>(type.bytes);
             return static_cast<std::int64_t>(bits << unused) >> unused;

@@ -19,6 +19,9 @@ public:
     /// Whether it looks at this robot.
     virtual bool observes(std::uint32_t robot) const = 0;
 
+    /// It starts, or starts anew.
+    virtual void note_start(std::uint32_t /*robot*/) {}
+
     /// Runs its program as pogosim::run() does. `clock_us`: of the robot now.
     virtual Stop run(std::uint32_t robot, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
                      double clock_us) = 0;

@@ -88,6 +88,16 @@ bool Profile::observes(std::uint32_t robot) const {
     return std::ranges::find(robots_, robot, &Robot::index) != robots_.end();
 }
 
+/// The calls of before are gone, and the tick in which the robot was does not count.
+void Profile::note_start(std::uint32_t robot) {
+    Robot& self = robot_of(robot);
+    self = {.index = self.index,
+            .id = self.id,
+            .category = std::move(self.category),
+            .lowest_stack = self.lowest_stack,
+            .highest_heap = self.highest_heap};
+}
+
 Profile::Robot& Profile::robot_of(std::uint32_t robot) {
     return *std::ranges::find(robots_, robot, &Robot::index);
 }
@@ -206,7 +216,9 @@ void Profile::note_jump(Robot& self, Step const& step, std::uint32_t from, std::
         }
         return;
     }
-    if (step.operation != Operation::jalr) {
+    bool const is_return = step.operation == Operation::jalr && step.rd == kUnread &&
+                           (step.rs1 == kReturnAddress || step.rs1 == kMillicode);
+    if (!is_return) {
         return;
     }
     auto const returned = std::find_if(self.frames.rbegin(), self.frames.rend(),
@@ -263,7 +275,14 @@ void Profile::check() const {
     }
 }
 
-void Profile::write() const {
+void Profile::write() {
+    constexpr double us_per_s = 1e6;
+    for (Robot& robot : robots_) {
+        double const taken_us = processor_.us_of(static_cast<double>(robot.tick.cycles)) + robot.tick.call_us;
+        if (robot.ticks_begun > 0 && loop_hz_ > 0 && taken_us > us_per_s / loop_hz_) {
+            end_tick(robot);
+        }
+    }
     auto const frames_of = [this](std::uint32_t path) {
         std::vector<std::uint32_t> frames;
         for (; path != 0; path = paths_[path].parent) {
@@ -310,7 +329,8 @@ void Profile::write() const {
                        tick.cycles, tick.call_us);
                })
         << ",\n\"functions\": "
-        << json_list(places_->functions(), [](std::string const& name) { return json_text(name); }) << ",\n\"lines\": "
+        << json_list(places_->functions(), [](std::string const& name) { return json_text(escaped(name)); })
+        << ",\n\"lines\": "
         << json_list(lines_,
                      [this](Line const& entry) {
                          CodePlaces::Line const& line = places_->line(entry.line);

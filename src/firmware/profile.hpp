@@ -24,6 +24,7 @@ public:
     void add(World const& world, std::uint32_t category, std::shared_ptr<FirmwareProgram const> const& program);
 
     bool observes(std::uint32_t robot) const override;
+    void note_start(std::uint32_t robot) override;
     Stop run(std::uint32_t robot, Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles,
              double clock_us) override;
     void note_tick(std::uint32_t robot, std::uint32_t ticks, int loop_hz, double clock_us) override;
@@ -32,8 +33,9 @@ public:
     /// Throws ConfigError if no robot runs firmware.
     void check() const;
 
-    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. Throws OutputError.
-    void write() const;
+    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. A tick in which the run has ended counts if it has
+    /// taken longer than it may. Throws OutputError.
+    void write();
 
 private:
     struct Cost {

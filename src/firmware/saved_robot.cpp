@@ -22,6 +22,8 @@ void visit_values(Robot& robot, Visit const& visit) {
     visit(robot.calls);
     visit(robot.tick_step);
     visit(robot.is_starting);
+    visit(robot.is_ending_tick);
+    visit(robot.was_cut_off);
     visit(robot.timer_resets);
     visit(robot.ends_tick);
     visit(robot.has_noted_call);

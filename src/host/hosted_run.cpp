@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
+#include <filesystem>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "config/scenario.hpp"
@@ -17,7 +20,11 @@ namespace {
 
 /// Throws ConfigError if the run would write over the program.
 void check_program_file(Scenario const& scenario, char const* program) {
-    if (is_used_file(scenario, /*film=*/"", program)) {
+    bool const is_input = std::ranges::any_of(scenario.object_files, [program](ObjectFile const& file) {
+        std::error_code error;
+        return std::filesystem::equivalent(file.path, program, error);
+    });  // others do not write over that
+    if (!is_input && is_used_file(scenario, /*film=*/"", program)) {
         throw ConfigError(
             fmt::format("the run would overwrite its program '{}'; choose another file to write", program));
     }

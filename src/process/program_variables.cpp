@@ -25,7 +25,10 @@ namespace {
 
 using Kind = VariableType::Kind;
 
-constexpr int kDeepest = 16;  // levels of types within types
+constexpr int kDeepest = 16;        // levels of types within types
+constexpr int kMostTypes = 20'000;  // of one variable: damaged debug information may say that a type contains itself
+
+thread_local int types_left = 0;  // of the variable that is read
 
 using shared_state::for_each_child;
 
@@ -79,7 +82,9 @@ VariableTypePointer read_type(Dwarf_Die& type, int depth);
 
 VariableTypePointer type_of(Dwarf_Die& entry, int depth) {
     std::optional<Dwarf_Die> type = type_behind(entry);
-    return type && depth < kDeepest ? read_type(*type, depth + 1) : std::make_shared<VariableType const>();
+    types_left = depth == 0 ? kMostTypes : types_left - 1;
+    bool const is_read = type && depth < kDeepest && types_left > 0;
+    return is_read ? read_type(*type, depth + 1) : std::make_shared<VariableType const>();
 }
 
 /// Sets the place of a bit field, in each of the ways in which compilers describe it.

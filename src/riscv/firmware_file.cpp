@@ -288,6 +288,7 @@ private:
                 symbols.push_back({.address = read_little_endian<4>(entry + 4),
                                    .bytes = read_little_endian<4>(entry + 8),
                                    .is_function = type == kFunction,
+                                   .is_global = read_little_endian<1>(entry + 12) >> 4 != 0,
                                    .name = std::move(name)});
             }
         }

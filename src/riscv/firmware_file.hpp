@@ -19,6 +19,7 @@ struct FirmwareSymbol {
     std::uint32_t address = 0;
     std::uint32_t bytes = 0;  // 0: the file does not say
     bool is_function = false;
+    bool is_global = false;  // else of one file
     std::string name;
 };
 

@@ -449,6 +449,9 @@ void Controllers::declare_columns() {
     services_.data.declaring = services_.data.is_declared = true;
     call_as_system(kNone, Phase::create_data_schema, callback_create_data_schema);
     services_.data.declaring = false;
+    if (driven_count() == 0) {
+        return;  // other brains drive all robots
+    }
     if (callback_global_step == nullptr && services_.data.held.empty()) {
         warn_of_empty_columns(services_.data.columns, controllers_);
     } else {

@@ -22,7 +22,8 @@ public:
     std::shared_ptr<FirmwareProgram const> of(RobotSpec const& robot) {
         auto const& spec = std::get<FirmwareSpec>(robot.brain);
         for (Loaded const& loaded : all_) {
-            if (loaded.spec == spec && loaded.processor == robot.model.processor) {
+            bool const is_same = loaded.spec.file == spec.file && loaded.spec.random == spec.random;
+            if (is_same && loaded.processor == robot.model.processor) {
                 return loaded.program;
             }
         }

@@ -413,7 +413,8 @@ FirmwareServices Simulation::firmware_services() {
             .timeout_s = scenario_.user_code_timeout_s,
             .workers = &workers_,
             .observer = observer_.get(),
-            .print = [this](std::uint32_t robot, std::string_view line) { services_.print_line(world_, robot, line); }};
+            .print = [this](std::uint32_t robot, std::string_view line) { services_.print_line(world_, robot, line); },
+            .is_interrupted = interrupted};
 }
 
 HostBrain* Simulation::host_brain(std::string_view category) {

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from firmwares import OF_ROBOTS, firmware_of, project_of, run_firmware, without_program
-from pogosim import Simulation
+from pogosim import Simulation, SimulationError
 from project import made, write
 from robot_sdk import TRIPLE, call, make_sdk, need
 from running import Run, by_robot, compile_text, ran, run, warnings, write_scene
@@ -172,7 +176,8 @@ def test_program_that_has_ended_stands_still(tmp_path: Path) -> None:
     assert set(frame["led_rgb"]) == {0x010203}
 
 
-def test_loop_that_polls_a_timer_goes_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize("cpu_time", ["off", "counted"])
+def test_loop_that_polls_a_timer_goes_on(cpu_time: str, tmp_path: Path) -> None:
     source = """#include "pogobot.h"
     int main(void) {
         time_reference_t timer;
@@ -186,7 +191,7 @@ def test_loop_that_polls_a_timer_goes_on(tmp_path: Path) -> None:
         }
     }
     """
-    frame = run_firmware(firmware_of(tmp_path, source), tmp_path, LED).frame()
+    frame = run_firmware(firmware_of(tmp_path, source), tmp_path, LED | {"objects.robots.cpu_time": cpu_time}).frame()
     red = by_robot(frame, "led_rgb")[:, 0] / 65536
     assert red[[0, 2, 4, 7, 20]].tolist() == [0, 0, 1, 2, 7]
 
@@ -652,3 +657,116 @@ def test_time_of_a_program_that_is_no_firmware_is_not_counted_in_silence(tmp_pat
         "objects.robots.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware FILE); the "
         "code of these robots takes no time"
     )
+
+
+@pytest.mark.parametrize("cpu_time", ["off", "counted"])
+def test_rows_are_those_between_two_ticks(cpu_time: str, swarm: Path, tmp_path: Path) -> None:
+    """The rest of a tick behind its sleep belongs to it, though the robot's clock is ahead then."""
+    frame = run_firmware(swarm, tmp_path, SWARM | {"objects.robots.cpu_time": cpu_time}).frame()
+    assert by_robot(frame, "pogobot_ticks")[[0, 1, 2], 0].tolist() == [0, 6, 12]
+
+
+def test_error_led_does_not_hold_a_tick_up(tmp_path: Path) -> None:
+    firmware = firmware_of(tmp_path, text("if (pogobot_ticks == 20) { msleep(40); }"))
+    native = compile_text(tmp_path, text("if (pogobot_ticks == 20) { msleep(40); }"))
+    settings = {"save_data_period": 0.01}
+    expected = by_robot(run(native, tmp_path / "native", settings).frame(), "pogobot_ticks")
+    np.testing.assert_array_equal(
+        by_robot(run_firmware(firmware, tmp_path / "firmware", settings).frame(), "pogobot_ticks"), expected
+    )
+
+
+def test_function_of_the_program_with_a_name_of_the_library_is_its_own(tmp_path: Path) -> None:
+    globals_ = "__attribute__((noinline)) static void busy_wait(uint32_t n) { mydata->level += (int16_t)n; }"
+    firmware = firmware_of(tmp_path, text("busy_wait(2);", globals_=globals_))
+    settings = {f"{OF_ROBOTS}": {"firmware": str(firmware), "columns": ["mydata.level"]}}
+    assert run(without_program(), tmp_path, settings).frame()["mydata.level"].max() == 2 * 125
+
+
+def test_characters_have_no_sign(tmp_path: Path) -> None:
+    firmware = firmware_of(
+        tmp_path,
+        text("mydata->word[0] = (char)200; letter = (char)200;", globals_="__attribute__((used)) char letter;"),
+    )
+    settings = {f"{OF_ROBOTS}": {"firmware": str(firmware), "columns": ["letter"]}}
+    assert run(without_program(), tmp_path, settings).frame()["letter"].max() == 200
+
+
+def test_robot_that_restarts_draws_another_seed(tmp_path: Path) -> None:
+    init = 'printf("seed %d\\n", pogobot_helper_getRandSeed()); msg_rx_fn = hear;'
+    firmware = firmware_of(tmp_path / "robot", text("", init, "static void hear(message_t* m) { (void)m; }"))
+    commands = """
+    message_t m = {{._packet_type = ir_t_cmd, ._emitting_power_list = 0xff, .payload_length = 8}, {0}};
+    if (pogobot_ticks % 30 == 10) { memcpy(m.payload, "DEADBEEF", 8); pogobot_infrared_sendRawLongMessage(&m); }"""
+    program = compile_text(tmp_path, text(commands).replace("user_step)", 'user_step, "remote")'))
+    common = {"type": "pogobot", "nb": 1, "y": 500, "geometry": "disk", "radius": 26.5}
+    objects = {"robots": common | {"x": 300, "brain": str(firmware)}, "remote": common | {"x": 360}}
+    profiled = run(program, tmp_path, {"objects": objects}, ["--profile", "profile.json"])
+    seeds = [line for line in profiled.robot_lines if "seed" in line]
+    assert len(seeds) == len(set(seeds)) == 5
+    frames = json.loads((tmp_path / "profile.json").read_text())
+    start = frames["functions"].index("_start")
+    assert max(stack["frames"].count(start) for stack in frames["stacks"]) == 1
+
+
+def test_category_without_robots_does_no_harm(swarm: Path, tmp_path: Path) -> None:
+    empty = {"type": "pogobot", "nb": 0, "geometry": "disk", "radius": 26.5, "brain": str(swarm)}
+    settings = SWARM | {"threads": 2, "objects.others": empty}
+    assert run_firmware(swarm, tmp_path, settings, ["--profile", "profile.json"]).code == 0
+
+
+def test_tick_that_does_not_end_is_told_where_time_is_counted(tmp_path: Path) -> None:
+    firmware = firmware_of(tmp_path, text("if (pogobot_ticks == 5) { for (volatile int i = 0;; i++) { } }"))
+    (said,) = warnings(run_firmware(firmware, tmp_path, {"objects.robots.cpu_time": "counted"}))
+    assert re.fullmatch(
+        r"robot #0 of category 'robots' has been in tick 5 for 1\.\d s, in user_step \(main\.c:\d+\), and the tick "
+        r"has not ended \(3 such robots\)",
+        said,
+    )
+
+
+def test_code_that_may_run_for_ever_can_be_interrupted(tmp_path: Path) -> None:
+    firmware = firmware_of(tmp_path, text("for (volatile int i = 0;; i++) { }"))
+    write_scene(tmp_path, {OF_ROBOTS: str(firmware), "user_code_timeout": 0})
+    process = subprocess.Popen(
+        [without_program(), "-c", "scene.yaml", "-g"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    errors = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "the run was interrupted in user_step" in errors
+
+
+def test_what_is_no_file_is_no_firmware(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.elf")
+    (tmp_path / "folder.elf").mkdir()
+    for name in ("pipe.elf", "folder.elf", "/dev/zero"):
+        assert "expected an ELF file" in refusal(Path(name), tmp_path, {f"{OF_ROBOTS}": {"firmware": name}})
+
+
+def test_profile_takes_no_other_files_place(swarm: Path, tmp_path: Path) -> None:
+    for name in ("scene.yaml", "data.feather"):
+        result = run_firmware(swarm, tmp_path, {}, ["--profile", name])
+        assert result.code == 2
+        assert f"--profile would overwrite '{name}'" in result.errors
+
+
+def test_python_reads_variables_of_any_shape(tmp_path: Path) -> None:
+    globals_ = "__attribute__((used)) char word[20]; __attribute__((used)) uint8_t table[3][4]; volatile double mean;"
+    step = 'strcpy(word, "hello"); table[2][3] = 7; mean = 0.5; mydata->count += 2;'
+    firmware = firmware_of(tmp_path, text(step, globals_=globals_))
+    with Simulation(None, write_scene(tmp_path, {OF_ROBOTS: str(firmware)})) as simulation:
+        simulation.run(0.5)
+        of = {
+            name: simulation.firmware_variable(name, firmware=firmware) for name in ("word", "table", "mean", "mydata")
+        }
+    assert of["table"].shape == (3, 3, 4)
+    assert of["table"][1, 2].tolist() == [0, 0, 0, 7]
+    assert of["mean"].tolist() == [0.5] * 3
+    assert bytes(of["word"][0].astype(np.uint8)).startswith(b"hello\0")
+    assert (of["mydata"]["count"] > 60).all()
+    with Simulation(firmware, tmp_path / "scene.yaml") as simulation:
+        assert simulation.user_data["count"].shape == (3,)
+        with pytest.raises(SimulationError, match="has no variable 'maen'; "):
+            simulation.firmware_variable("maen")

@@ -69,6 +69,13 @@ def parser(prog: str) -> Parser:
     )
     made.add_argument("--category", metavar="NAME", default="robots", help="whose robots (default: %(default)s)")
     made.add_argument("--until", metavar="S", type=finite, default=math.inf, help="simulated time to compare, s")
+    made.add_argument(
+        "--tolerance",
+        metavar="X",
+        type=finite,
+        default=0.0,
+        help="by which share of their size numbers with a fraction may differ (default: 0)",
+    )
     made.add_argument("--most", metavar="N", type=whole(1), default=20, help="variables to list (default: %(default)s)")
     return made
 
@@ -92,6 +99,7 @@ def compare(options: argparse.Namespace) -> int:
         ):
             if comparison.robots == 0:
                 raise FirmwareError(f"{configuration} has no robots of the category '{options.category}'")
+            comparison.tolerance = options.tolerance
             found = comparison.run(options.until, options.most)
             robots, time_s = comparison.robots, comparison.time_s
     except SimulationError as error:

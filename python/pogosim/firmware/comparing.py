@@ -47,13 +47,19 @@ def flattened(values: npt.NDArray[Any], name: str) -> Iterator[tuple[str, npt.ND
         yield name, values
 
 
-def differing(program: npt.NDArray[Any], firmware: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
-    """Return which robots differ in a variable. Pointers, which always do, count as equal. Shapes: (robots, ...)."""
+def differing(program: npt.NDArray[Any], firmware: npt.NDArray[Any], tolerance: float = 0.0) -> npt.NDArray[np.bool_]:
+    """Return which robots differ in a variable. Pointers, which always do, count as equal.
+
+    Args:
+        program: Shape (robots, ...).
+        firmware: The same shape.
+        tolerance: By which share of their size floating-point numbers may differ, 0 or more.
+    """
     if program.shape != firmware.shape:
         return np.ones(len(program), dtype=bool)
     unequal = program != firmware
     if program.dtype.kind == "f" and firmware.dtype.kind == "f":
-        unequal &= ~(np.isnan(program) & np.isnan(firmware))
+        unequal &= ~np.isclose(program, firmware, rtol=tolerance, atol=tolerance, equal_nan=True)
     if program.dtype.kind == "u" and program.dtype.itemsize > firmware.dtype.itemsize:
         unequal &= program < _POINTERS_FROM
     found: npt.NDArray[np.bool_] = unequal.reshape(len(program), -1).any(axis=1)
@@ -96,6 +102,7 @@ class Comparison:
         chosen = self._program.categories.index(category) if category in self._program.categories else -1
         self._is_chosen = self._program.robot_categories == chosen
         self.found: dict[str, Difference] = {}
+        self.tolerance = 0.0
 
     def __enter__(self) -> Comparison:
         """Close both runs at the end of the block."""
@@ -135,7 +142,7 @@ class Comparison:
         for name, values in in_program.items():
             if name in self.found or name not in in_firmware:
                 continue
-            unequal = differing(values, in_firmware[name])
+            unequal = differing(values, in_firmware[name], self.tolerance)
             if unequal.any():
                 robot = int(np.argmax(unequal))
                 self.found[name] = Difference(

@@ -30,7 +30,8 @@ class Variable(NamedTuple):
 
     def values(self, memory: npt.NDArray[np.uint8]) -> npt.NDArray[Any]:
         """Return its values. `memory`: its bytes in each robot, shape (robots, size)."""
-        return np.ascontiguousarray(memory).view(self.type).reshape(len(memory), *self.type.shape)
+        base, shape = self.type.subdtype or (self.type, ())
+        return np.ascontiguousarray(memory).view(base).reshape(len(memory), *shape)
 
 
 def _address(entry: DIE) -> int | None:
@@ -90,6 +91,8 @@ def variables_of(file: Path) -> dict[str, Variable]:
         found = _of_version(file, (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns))
     except (OSError, ELFError) as error:
         raise SimulationError(f"{file} cannot be read: {error}") from None
+    except (RecursionError, ValueError, KeyError, AttributeError):  # of a reader that meets what no compiler writes
+        raise SimulationError(f"{file} has damaged debug information: compile it again") from None
     if not found:
         raise SimulationError(f"{file} has no debug information: compile it with -g")
     return found

@@ -504,7 +504,8 @@ class Simulation:
             raise SimulationError("the simulation has no program: name the firmware")
         known = variables_of(file)
         if name not in known:
-            raise SimulationError(f"{file} has no variable {shown(name)}{advice(name, known)}")
+            own = [other for other in known if not other.startswith("_") and not other.isupper()]  # not the library's
+            raise SimulationError(f"{file} has no variable {shown(name)}{advice(str(name), own)}")
         number = self.categories.index(category) if category in self.categories else -1
         count = int(np.count_nonzero(self.robot_categories == number))
         variable = known[name]
