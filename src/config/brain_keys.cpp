@@ -236,10 +236,13 @@ std::span<Key<RobotSpec> const> brain_keys() {
                        "What drives the robots. program: the program in C. host: the process that steps the run, such "
                        "as Python, by arrays. script: a list of what they do at which times; see its own table. The "
                        "name of an ELF file, or {firmware: FILE}: the firmware of robots. Default: program."},
-        Key<RobotSpec>{"cpu_time", one_of(&RobotSpec::cpu_time, {{"off", CpuTime::off}, {"counted", CpuTime::counted}}),
-                       any(), "",
-                       "Whether the code of a firmware takes time. off: none. counted: as much as on the robot, by the "
-                       "cycles of its instructions and the times of its calls (`processor`)."},
+        Key<RobotSpec>{
+            "cpu_time",
+            one_of(&RobotSpec::cpu_time,
+                   {{"off", CpuTime::off}, {"counted", CpuTime::counted}, {"false", CpuTime::off}}),
+            any(), "",
+            "Whether the code of a firmware takes time. off, which YAML 1.1 reads as false: none. counted: as much as on "
+            "the robot, by the cycles of its instructions and the times of its calls (`processor`)."},
     };
     return keys;
 }

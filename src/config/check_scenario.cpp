@@ -235,8 +235,8 @@ void check_cpu_time(Scenario const& scenario) {
         bool const is_counted = object.spec.robot && object.spec.robot->cpu_time == CpuTime::counted;
         if (is_counted && object.nb > 0 && !std::holds_alternative<FirmwareSpec>(object.spec.robot->brain)) {
             log().warn(
-                "{}: objects.{}.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware FILE); "
-                "the code of these robots takes no time",
+                "{}: objects.{}.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware "
+                "FILE); the code of these robots takes no time",
                 object.line, shown(object.category));
         }
     }

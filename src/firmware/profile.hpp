@@ -33,8 +33,8 @@ public:
     /// Throws ConfigError if no robot runs firmware.
     void check() const;
 
-    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. A tick in which the run has ended counts if it has
-    /// taken longer than it may. Throws OutputError.
+    /// Writes it as JSON, see python/pogosim/firmware/profile/raw.py. A tick in which the run has ended counts if it
+    /// has taken longer than it may. Throws OutputError.
     void write();
 
 private:

@@ -74,7 +74,7 @@ def parser(prog: str) -> Parser:
         metavar="X",
         type=finite,
         default=0.0,
-        help="by which share of their size numbers with a fraction may differ (default: 0)",
+        help="by which share of their size numbers with a fraction may differ (default: %(default)s)",
     )
     made.add_argument("--most", metavar="N", type=whole(1), default=20, help="variables to list (default: %(default)s)")
     return made
