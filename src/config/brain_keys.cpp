@@ -241,8 +241,8 @@ std::span<Key<RobotSpec> const> brain_keys() {
             one_of(&RobotSpec::cpu_time,
                    {{"off", CpuTime::off}, {"counted", CpuTime::counted}, {"false", CpuTime::off}}),
             any(), "",
-            "Whether the code of a firmware takes time. off, which YAML 1.1 reads as false: none. counted: as much as on "
-            "the robot, by the cycles of its instructions and the times of its calls (`processor`)."},
+            "Whether the code of a firmware takes time. off, which YAML 1.1 reads as false: none. counted: as much as "
+            "on the robot, by the cycles of its instructions and the times of its calls (`processor`)."},
     };
     return keys;
 }
