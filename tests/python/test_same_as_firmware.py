@@ -30,7 +30,7 @@ BUILT_IN = ["time", "robot_category", "robot_id", "pogobot_ticks", "x", "y", "an
 # Its program writes into the USERDATA of robots.
 NOT_COMPARED = {"supervisor": ["led_rgb"]}
 SETTINGS = {
-    "simulation_time": 4,  # later, positions differ where sinf() does
+    "simulation_time": 2,  # later, positions differ where sinf() does
     "parameters": "{}",
     "GUI": "false",
     "enable_data_logging": "true",
