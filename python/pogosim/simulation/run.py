@@ -499,6 +499,8 @@ class Simulation:
             ConfigurationError: The robots of the category do not run firmware.
             SimulationError: The file has no such variable, or no debug information.
         """
+        run = self._run
+        check_process(self._current.process)
         file = self.program if firmware is None else given.path("firmware", firmware)
         if file is None:
             raise SimulationError("the simulation has no program: name the firmware")
@@ -510,7 +512,7 @@ class Simulation:
         count = int(np.count_nonzero(self.robot_categories == number))
         variable = known[name]
         with self._busy():
-            memory = self._run.firmware_bytes(category, count, variable.address, variable.type.itemsize)
+            memory = run.firmware_bytes(category, count, variable.address, variable.type.itemsize)
         return variable.values(memory)
 
     def brain(self, category: str) -> Brain:
