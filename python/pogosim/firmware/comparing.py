@@ -156,5 +156,7 @@ class Comparison:
 
     def _variables_of_firmware(self) -> dict[str, npt.NDArray[Any]]:
         found = {name: getattr(self._firmware, name)[self._is_chosen] for name in STATE}
-        found.update(flattened(self._firmware.firmware_variable("mydata", self._category, self._file), "mydata"))
+        found.update(
+            flattened(self._firmware.firmware_variable("mydata", self._category, firmware=self._file), "mydata")
+        )
         return found

@@ -486,7 +486,7 @@ class Simulation:
         return found
 
     def firmware_variable(
-        self, name: str, category: str = "robots", firmware: PathLike | None = None
+        self, name: str, category: str = "robots", *, firmware: PathLike | None = None
     ) -> npt.NDArray[Any]:
         """Return a copy of a variable of robots that run firmware. Shape (robots of the category, ...).
 
