@@ -14,18 +14,24 @@ namespace pogosim {
 
 namespace {
 
+/// Whether a text is a decimal number, without a sign, that fits in an unsigned type.
+template <class Unsigned>
+bool is_decimal(std::string const& text) {
+    constexpr std::size_t most_digits = std::numeric_limits<Unsigned>::digits10 + 1;
+    bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return digits && text.size() <= most_digits && std::stoull(text) <= std::numeric_limits<Unsigned>::max();
+}
+
 /// Empty for a decimal number that fits in 32 bits, otherwise an error message.
 std::string is_seed(std::string const& text) {
-    bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-    bool const fits = digits && text.size() <= 10 && std::stoull(text) <= std::numeric_limits<std::uint32_t>::max();
-    return fits ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
+    return is_decimal<std::uint32_t>(text) ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
 }
 
 /// Empty for a port of gdb, otherwise an error message.
 std::string is_port(std::string const& text) {
-    bool const digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-    bool const fits = digits && text.size() <= 5 && std::stoul(text) <= std::numeric_limits<std::uint16_t>::max();
-    return fits ? "" : "expected a port from 1 to 65535, or 0 for one that is free, found '" + text + "'";
+    return is_decimal<std::uint16_t>(text)
+               ? ""
+               : "expected a port from 1 to 65535, or 0 for one that is free, found '" + text + "'";
 }
 
 std::string is_not_empty(std::string const& text) {

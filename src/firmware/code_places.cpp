@@ -95,6 +95,17 @@ private:
         }
     }
 
+    /// Calls see(word) for each word of code of a function or of a part of one.
+    template <class See>
+    void for_each_word_of(Dwarf_Die& entry, See const& see) const {
+        Dwarf_Addr base = 0;
+        Dwarf_Addr begin = 0;
+        Dwarf_Addr end = 0;
+        for (std::ptrdiff_t offset = 0; (offset = dwarf_ranges(&entry, offset, &base, &begin, &end)) > 0;) {
+            for_each_word(begin, end, see);
+        }
+    }
+
     void look_into(Dwarf_Die& entry, std::optional<CodePlaces::Chain> const& around) {
         int const tag = dwarf_tag(&entry);
         std::optional<CodePlaces::Chain> chain = around;
@@ -123,30 +134,19 @@ private:
         char const* const name = dwarf_diename(&entry);
         chain.push_back(places_.function_number(name == nullptr ? "?" : name));
         std::uint32_t const number = places_.chain_number(chain);
-        Dwarf_Addr base = 0;
-        Dwarf_Addr begin = 0;
-        Dwarf_Addr end = 0;
-        for (std::ptrdiff_t offset = 0; (offset = dwarf_ranges(&entry, offset, &base, &begin, &end)) > 0;) {
-            for_each_word(begin, end, [&](std::uint32_t word) { places_.chain_of_[word] = number; });
-        }
+        for_each_word_of(entry, [&](std::uint32_t word) { places_.chain_of_[word] = number; });
     }
 
     /// Line tables also list functions that the linker has left out, at address 0, so only those that are there count.
     void mark_lines(Dwarf_Die& function) {
-        Dwarf_Addr base = 0;
-        Dwarf_Addr begin = 0;
-        Dwarf_Addr end = 0;
-        for (std::ptrdiff_t offset = 0; (offset = dwarf_ranges(&function, offset, &base, &begin, &end)) > 0;) {
-            for_each_word(begin, end, [this](std::uint32_t word) {
-                Dwarf_Line* const line = dwarf_getsrc_die(unit_, places_.address_ + Dwarf_Addr{4} * word);
-                char const* const file = line == nullptr ? nullptr : dwarf_linesrc(line, nullptr, nullptr);
-                int number = 0;
-                if (file != nullptr && dwarf_lineno(line, &number) == 0) {
-                    places_.line_of_[word] =
-                        places_.line_number(std::filesystem::path(file).filename().string(), number);
-                }
-            });
-        }
+        for_each_word_of(function, [this](std::uint32_t word) {
+            Dwarf_Line* const line = dwarf_getsrc_die(unit_, places_.address_ + Dwarf_Addr{4} * word);
+            char const* const file = line == nullptr ? nullptr : dwarf_linesrc(line, nullptr, nullptr);
+            int number = 0;
+            if (file != nullptr && dwarf_lineno(line, &number) == 0) {
+                places_.line_of_[word] = places_.line_number(std::filesystem::path(file).filename().string(), number);
+            }
+        });
     }
 
     Dwarf_Die* unit_ = nullptr;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <exception>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "base/error.hpp"

@@ -152,7 +152,7 @@ Profile::Cost& Profile::cost_of(std::uint32_t number, std::vector<Cost>& costs, 
     return cost;
 }
 
-/// A tick that has ended counts; one in which the run ends does not.
+/// Adds the costs of a tick to those of all ticks.
 void Profile::end_tick(Robot& self) {
     ticks_.push_back(self.tick);
     auto const count = [](auto& totals, std::vector<Cost>& costs, std::vector<std::uint32_t>& used) {
@@ -277,6 +277,7 @@ void Profile::check() const {
 
 void Profile::write() {
     constexpr double us_per_s = 1e6;
+    // The tick in which the run ends counts if it has already taken too long.
     for (Robot& robot : robots_) {
         double const taken_us = processor_.us_of(static_cast<double>(robot.tick.cycles)) + robot.tick.call_us;
         if (robot.ticks_begun > 0 && loop_hz_ > 0 && taken_us > us_per_s / loop_hz_) {
@@ -325,8 +326,7 @@ void Profile::write() {
                [this](Tick const& tick) {
                    return fmt::format(
                        "{{\"robot\": {}, \"tick\": {}, \"begin_s\": {:.6f}, \"cycles\": {}, \"call_us\": {:.3f}}}",
-                       std::ranges::find(robots_, tick.robot, &Robot::index)->id, tick.number, tick.begin_us * 1e-6,
-                       tick.cycles, tick.call_us);
+                       robot_of(tick.robot).id, tick.number, tick.begin_us * 1e-6, tick.cycles, tick.call_us);
                })
         << ",\n\"functions\": "
         << json_list(places_->functions(), [](std::string const& name) { return json_text(escaped(name)); })
@@ -352,8 +352,7 @@ void Profile::write() {
                [this](Span const& span) {
                    return fmt::format(
                        "{{\"robot\": {}, \"name\": {}, \"begin_us\": {:.3f}, \"duration_us\": {:.3f}, \"depth\": {}}}",
-                       std::ranges::find(robots_, span.robot, &Robot::index)->id, span.function, span.begin_us,
-                       span.duration_us, span.depth);
+                       robot_of(span.robot).id, span.function, span.begin_us, span.duration_us, span.depth);
                })
         << "}\n";
     out.close();

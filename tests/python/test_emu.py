@@ -318,9 +318,9 @@ def test_category_chooses_the_controller_and_must_have_one(project: Path) -> Non
     pogobot_start(user_init, user_step, "leaders");""",
         )
     )
-    nobody = make(project, "emu")
-    assert nobody.code == 2
-    assert "This program has no pogobot_start() for robots of category 'robots' (ROBOT_CATEGORY)" in nobody.errors
+    failed = make(project, "emu")
+    assert failed.code == 2
+    assert "This program has no pogobot_start() for robots of category 'robots' (ROBOT_CATEGORY)" in failed.errors
     assert not firmware_of(project).exists()
     result = made(project, "emu", "ROBOT_CATEGORY=leaders")
     assert "for robots of category 'leaders'" in result.output

@@ -66,10 +66,12 @@ def differing(program: npt.NDArray[Any], firmware: npt.NDArray[Any], tolerance: 
     return found
 
 
-def variables(simulation: Simulation, is_chosen: npt.NDArray[np.bool_]) -> dict[str, npt.NDArray[Any]]:
-    """Return what is compared of the chosen robots, by name."""
+def variables(
+    simulation: Simulation, is_chosen: npt.NDArray[np.bool_], user_data: npt.NDArray[Any]
+) -> dict[str, npt.NDArray[Any]]:
+    """Return what is compared of the chosen robots, by name; `user_data` is that of these robots."""
     found = {name: getattr(simulation, name)[is_chosen] for name in STATE}
-    found.update(flattened(simulation.user_data[is_chosen], "mydata"))
+    found.update(flattened(user_data, "mydata"))
     return found
 
 
@@ -137,8 +139,9 @@ class Comparison:
         return sorted(self.found.values(), key=lambda difference: difference.time_s)
 
     def _look(self) -> None:
-        in_program = variables(self._program, self._is_chosen)
-        in_firmware = self._variables_of_firmware()
+        in_program = variables(self._program, self._is_chosen, self._program.user_data[self._is_chosen])
+        of_firmware = self._firmware.firmware_variable("mydata", self._category, firmware=self._file)
+        in_firmware = variables(self._firmware, self._is_chosen, of_firmware)
         for name, values in in_program.items():
             if name in self.found or name not in in_firmware:
                 continue
@@ -153,10 +156,3 @@ class Comparison:
                     values[robot],
                     in_firmware[name][robot],
                 )
-
-    def _variables_of_firmware(self) -> dict[str, npt.NDArray[Any]]:
-        found = {name: getattr(self._firmware, name)[self._is_chosen] for name in STATE}
-        found.update(
-            flattened(self._firmware.firmware_variable("mydata", self._category, firmware=self._file), "mydata")
-        )
-        return found
