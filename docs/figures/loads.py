@@ -60,15 +60,18 @@ def project_of(example: Path, folder: Path, pogosim: Installation) -> Path:
 
 
 def profile_of(example: Path, folder: Path, pogosim: Installation) -> Profile:
-    """Profile the first robot of an example."""
+    """Profile the first robot of an example: in the second run of those that keep flash memory from one to the next."""
     firmware = made_in(project_of(example, folder, pogosim), example, pogosim)
-    raw = folder / f"{example.name}.json"
+    raw, flash = folder / f"{example.name}.json", folder / f"{example.name}.flash"
     configuration = ROOT / "conf" / f"{CONFIGURATIONS.get(example.name, example.name)}.yaml"
     command = [str(pogosim.without_program), "-c", str(configuration), "-g", "-q", "-nr", "--firmware", str(firmware)]
     command += ["--profile", str(raw)]
-    for setting in SETTINGS:
+    keeps_flash = "flash_state:" in configuration.read_text()
+    own_flash = (f"flash_state.{file}={flash}" for file in ("input_file", "output_file")) if keeps_flash else ()
+    for setting in (*SETTINGS, *own_flash):
         command += ["--set", setting]
-    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    for _ in range(2 if keeps_flash else 1):
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
     return read_profile(raw)
 
 

@@ -396,7 +396,7 @@ BAD_OPTIONS = {
     ("tracks.csv", "-c", "conf.yaml", "--parameters", "speed"): "no parameter speed; expected some of max_linear_speed",
     ("tracks.csv", "-c", "conf.yaml", "--category", "dogs"): "no robots 'dogs'",
     ("tracks.csv", "-c", "conf.yaml", "-S", "none"): "there is no project, source file or program none",
-    ("tracks.csv", "-c", "conf.yaml", "-S", "conf.yaml"): "neither a folder, a .c or .cpp file, nor a program",
+    ("tracks.csv", "-c", "conf.yaml", "-S", "conf.yaml"): "a .c or .cpp file, a firmware, nor a program",
     ("tracks.csv", "-c", "conf.yaml", "--length-unit", "px"): "--mm-per-pixel",
     ("tracks.csv", "-c", "conf.yaml", "--length-unit", "m"): "the arena is 1500 x 1500 mm",
     ("tracks.csv", "-c", "conf.yaml", "-o", "tracks.csv"): "tracks.csv is not a folder",

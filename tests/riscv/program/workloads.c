@@ -3,7 +3,7 @@
 
 #define COUNT 1024
 
-static uint32_t next_random(uint32_t *state) {
+static uint32_t next_random(uint32_t* state) {
     *state ^= *state << 13;
     *state ^= *state >> 17;
     *state ^= *state << 5;
