@@ -23,6 +23,7 @@ struct RobotRange {
     std::uint32_t last = 0;  // exclusive
 
     std::uint32_t size() const { return last - first; }
+    bool contains(std::uint32_t robot) const { return robot >= first && robot < last; }
 };
 
 /// The robots of a category.

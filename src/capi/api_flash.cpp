@@ -5,22 +5,11 @@
 #include "robot/slip.hpp"
 
 using pogosim::context;
+using pogosim::NoteSlip;
 using pogosim::require_argument;
 using pogosim::require_robot;
 
 namespace {
-
-bool is_page(char const* function, std::uint16_t page, char const* outcome) {
-    if (page >= pogosim::kFlashPageCount) [[unlikely]] {
-        pogosim::note_slip({function, "page", "0 to 5887 (POGOBOT_USER_FLASH_PAGE_COUNT - 1)", outcome}, page);
-        return false;
-    }
-    if (context.has_robot() && page >= context.spec().model.flash_pages) [[unlikely]] {
-        pogosim::note_slip({function, "page", "one of the flash_pages of this robot's model, from 0", outcome}, page);
-        return false;
-    }
-    return true;
-}
 
 /// Once for each category.
 void note_lost_bits(std::uint16_t page) {
@@ -36,7 +25,7 @@ void note_lost_bits(std::uint16_t page) {
 void read_page_flash(uint16_t page, char* buf) {
     require_robot(__func__);
     require_argument(buf, __func__, "buf");
-    if (is_page(__func__, page, "nothing is read")) {
+    if (pogosim::is_flash_page(pogosim::own_model(), page, "nothing is read", NoteSlip{__func__})) {
         pogosim::read_page(context.devices().flash[context.device], page, reinterpret_cast<std::byte*>(buf));
     }
 }
@@ -44,7 +33,7 @@ void read_page_flash(uint16_t page, char* buf) {
 void write_page_flash(uint16_t page, void const* data) {
     require_robot(__func__);
     require_argument(data, __func__, "data");
-    if (!is_page(__func__, page, "nothing is written")) {
+    if (!pogosim::is_flash_page(pogosim::own_model(), page, "nothing is written", NoteSlip{__func__})) {
         return;
     }
     if (!pogosim::write_page(*context.world, context.device, page, static_cast<std::byte const*>(data))) {

@@ -23,7 +23,9 @@ using pogosim::context;
 using pogosim::FrameHeader;
 using pogosim::kind_of_packet;
 using pogosim::kMostFaces;
+using pogosim::kNothingSent;
 using pogosim::note_slip;
+using pogosim::NoteSlip;
 using pogosim::Packet;
 using pogosim::PacketKind;
 using pogosim::require_argument;
@@ -33,7 +35,6 @@ namespace {
 
 constexpr std::uint32_t kSent = 0;
 constexpr std::uint32_t kNotSent = 1;
-constexpr auto kNothingSent = "nothing is sent, and the function returns 1";
 constexpr auto kMessage = "the address of a message";
 
 std::span<std::byte const> bytes_of(std::uint8_t const* data, std::size_t size) {
@@ -61,10 +62,7 @@ inline void transmit(Packet const& packet) {
 
 /// False, with a message, for a message that cannot be sent.
 bool is_message(char const* function, std::uint8_t const* payload, std::uint16_t size) {
-    if (size > MAX_PAYLOAD_SIZE_BYTES) [[unlikely]] {
-        static_assert(MAX_PAYLOAD_SIZE_BYTES == 382);
-        note_slip({function, "the length of the message", "0 to 382 bytes (MAX_PAYLOAD_SIZE_BYTES)", kNothingSent},
-                  size);
+    if (!pogosim::is_payload_size(size, NoteSlip{function})) {
         return false;
     }
     if (payload == nullptr && size > 0) [[unlikely]] {
@@ -89,18 +87,7 @@ std::uint8_t own_faces() {
 }
 
 std::uint8_t emitters_of(char const* function, ir_direction direction) {
-    int const index = static_cast<int>(direction);
-    if (index < 0 || index > static_cast<int>(ir_all)) [[unlikely]] {
-        note_slip({function, "dir", "ir_front (0) to ir_left (3), or ir_all (4)", "the message goes in all directions"},
-                  index);
-    }
-    if (index < 0 || index >= static_cast<int>(kMostFaces)) {
-        return own_faces();
-    }
-    if ((own_faces() >> index & 1U) == 0) [[unlikely]] {
-        note_slip({function, "dir", "one of the faces of this robot's model, from 0", "nothing is sent"}, index);
-    }
-    return static_cast<std::uint8_t>(own_faces() & 1U << index);
+    return pogosim::emitters_of_direction(own_faces(), direction, NoteSlip{function});
 }
 
 std::uint8_t own_power_list(std::uint8_t emitters) {
@@ -187,11 +174,7 @@ uint32_t pogobot_infrared_sendRawLongMessage(message_t* const message) {
     message->header._sender_id = pogobot_helper_getid();
     std::uint8_t const list = message->header._emitting_power_list;
     std::uint8_t const emitters = pogosim::emitters_in(*context.world, context.device, list);
-    if (emitters == 0) [[unlikely]] {
-        note_slip({__func__, "_emitting_power_list", "a power that is not 0 for at least one emitter",
-                   "nothing is sent, as on a real robot"},
-                  list);
-    }
+    pogosim::check_emitters(emitters, list, NoteSlip{__func__});
     return send_long(__func__, emitters, list, message->payload, message->header.payload_length,
                      message->header._packet_type);
 }
@@ -220,9 +203,7 @@ int pogosim_send_packet(void const* descriptor, uint8_t const* data, uint32_t si
 
 void pogobot_infrared_set_power(uint8_t power) {
     require_robot(__func__);
-    if (power > pogobot_infrared_emitter_power_max) [[unlikely]] {
-        note_slip({__func__, "power", "0 to 3", "3 is used"}, power);
-    }
+    pogosim::check_emitter_power(power, NoteSlip{__func__});
     pogosim::set_ir_power(*context.world, context.device, power);
 }
 
@@ -280,9 +261,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
 }
 
 void pogobot_infrared_get_receiver_error_counter(slip_error_counter_s* const counter, uint8_t ir_index) {
-    if (ir_index >= IR_RX_COUNT) [[unlikely]] {
-        note_slip({__func__, "ir_index", "0 (front) to 3 (left)", "the counters are set to 0"}, ir_index);
-    }
+    pogosim::check_receiver(ir_index, NoteSlip{__func__});
     if (counter == nullptr) [[unlikely]] {
         note_slip({__func__, "counter", "the address of the counters", "nothing is written"}, "NULL");
         return;

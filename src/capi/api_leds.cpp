@@ -7,6 +7,7 @@
 
 using pogosim::context;
 using pogosim::note_slip;
+using pogosim::NoteSlip;
 using pogosim::require_robot;
 
 // hsv_to_rgb() of colormaps.c, which is renamed where the simulator compiles it (src/CMakeLists.txt).
@@ -36,11 +37,7 @@ void pogobot_led_setColor(uint8_t const r, uint8_t const g, uint8_t const b) {
 void pogobot_led_setColors(uint8_t const r, uint8_t const g, uint8_t const b, uint8_t id) {
     require_robot(__func__);
     pogosim::note_call();
-    if (id >= pogosim::kLedCount) [[unlikely]] {
-        note_slip({__func__, "id", "0 (head) to 4 (left)", "nothing is set"}, id);
-    } else if (context.has_robot() && id >= context.spec().model.leds.size()) [[unlikely]] {
-        note_slip({__func__, "id", "one of the leds of this robot's model, from 0", "nothing is set"}, id);
-    } else if (context.has_robot()) {
+    if (pogosim::is_led(pogosim::own_model(), id, NoteSlip{__func__}) && context.has_robot()) {
         pogosim::set_led(*context.world, context.robot, id, {r, g, b});
     }
 }

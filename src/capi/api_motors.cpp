@@ -11,6 +11,7 @@
 using pogosim::context;
 using pogosim::kMotorCount;
 using pogosim::note_slip;
+using pogosim::NoteSlip;
 using pogosim::require_robot;
 
 namespace {
@@ -19,34 +20,11 @@ pogosim::Motors& own_motors() {
     return context.devices().motors[context.device];
 }
 
-bool is_motor(char const* function, motor_id motor) {
-    bool const known = static_cast<int>(motor) >= 0 && static_cast<int>(motor) < static_cast<int>(kMotorCount);
-    if (!known) [[unlikely]] {
-        note_slip({function, "motor", "motorR (0), motorL (1) or motorB (2)", "nothing is set"},
-                  static_cast<int>(motor));
-    }
-    return known;
-}
-
-/// A power that is negative as a 16-bit number was meant as a reversed direction.
-void note_power(char const* function, std::uint16_t power) {
-    if (power > INT16_MAX) {
-        note_slip({function, "value", "0 to 1023 (motorFull)",
-                   "powers are unsigned, so this one drives the motor at full power; to reverse it, use "
-                   "pogobot_motor_dir_set and a positive power"},
-                  static_cast<int>(static_cast<std::int16_t>(power)));
-    } else {
-        note_slip({function, "value", "0 to 1023 (motorFull)", "1023 is used"}, power);
-    }
-}
-
 void set_power(char const* function, motor_id motor, std::uint16_t power) {
     require_robot(function);
     pogosim::note_call();
-    if (is_motor(function, motor)) {
-        if (power > motorFull) [[unlikely]] {
-            note_power(function, power);
-        }
+    if (pogosim::is_motor(motor, NoteSlip{function})) {
+        pogosim::check_power(power, NoteSlip{function});
         pogosim::set_motor_power(*context.world, context.device, motor, power);
     }
 }
@@ -57,15 +35,6 @@ bool has_place(char const* function, char const* argument, void const* place) {
         note_slip({function, argument, "the address of three values", "nothing is read or written"}, "NULL");
     }
     return place != nullptr;
-}
-
-/// Reports a value to be stored that is above what motors take.
-template <class T>
-void note_stored(char const* function, char const* argument, T const* values, T most, char const* expected) {
-    T const* const wrong = std::find_if(values, values + kMotorCount, [most](T value) { return value > most; });
-    if (wrong != values + kMotorCount) [[unlikely]] {
-        note_slip({function, argument, expected, "it is stored as it is"}, *wrong);
-    }
 }
 
 }  // namespace
@@ -80,10 +49,8 @@ void pogobot_motor_set(motor_id motor, uint16_t value) {
 
 void pogobot_motor_dir_set(motor_id motor, uint8_t value) {
     require_robot(__func__);
-    if (is_motor(__func__, motor)) {
-        if (value > 1) [[unlikely]] {
-            note_slip({__func__, "value", "0 or 1", "1 is used"}, value);
-        }
+    if (pogosim::is_motor(motor, NoteSlip{__func__})) {
+        pogosim::check_direction(value, NoteSlip{__func__});
         pogosim::set_motor_direction(*context.world, context.device, motor, value);
     }
 }
@@ -107,7 +74,7 @@ int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
     if (!has_place(__func__, "p_directions", p_directions)) {
         return -1;
     }
-    note_stored<std::uint8_t>(__func__, "p_directions", p_directions, 1, "0 or 1 for each motor");
+    pogosim::check_stored_directions({p_directions, kMotorCount}, NoteSlip{__func__});
     std::copy_n(p_directions, kMotorCount, own_motors().stored_direction.begin());
     return 0;
 }
@@ -126,7 +93,7 @@ uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers) {
     if (!has_place(__func__, "p_powers", p_powers)) {
         return UINT8_MAX;
     }
-    note_stored<std::uint16_t>(__func__, "p_powers", p_powers, motorFull, "0 to 1023 (motorFull) for each motor");
+    pogosim::check_stored_powers({p_powers, kMotorCount}, NoteSlip{__func__});
     std::copy_n(p_powers, kMotorCount, own_motors().stored_power.begin());
     return 0;
 }

@@ -19,27 +19,13 @@ int16_t pogobot_photosensors_read(uint8_t sensor_number) {
     require_robot(__func__);
     pogosim::note_call();
     pogosim::take_back_floating_point();
-    if (sensor_number >= pogosim::kPhotosensorCount) [[unlikely]] {
-        pogosim::note_slip({__func__, "sensor_number", "p_B (0, back), p_FL (1, front left) or p_FR (2, front right)",
-                            "-1 is returned"},
-                           sensor_number);
-        return -1;
-    }
-    if (!context.has_body()) {
-        return -1;
-    }
-    if (sensor_number >= context.spec().model.light_sensors.size()) [[unlikely]] {
-        pogosim::note_slip(
-            {__func__, "sensor_number", "one of the light_sensors of this robot's model, from 0", "-1 is returned"},
-            sensor_number);
+    if (!pogosim::is_light_sensor(pogosim::own_model(), sensor_number, pogosim::NoteSlip{__func__}) ||
+        !context.has_body()) {
         return -1;
     }
     pogosim::World& world = *context.world;
     if (world.lamps.empty()) [[unlikely]] {
-        context.services->warn_once(
-            "{}(): there is no lamp in this world, so it is dark everywhere; add an object of type static_light or "
-            "another lamp to the configuration",
-            __func__);
+        context.services->warn_once_of({.text = pogosim::kNoLamps}, "{}(): {}", __func__, pogosim::kNoLamps);
     }
     return pogosim::read_photosensor(world, context.robot, sensor_number);
 }

@@ -59,9 +59,7 @@ void set_origin(time_reference_t* reference, std::int64_t origin_us) {
 
 /// Sleeps for `count` units of `unit_us` microseconds of the robot's time. Negative times take none.
 void sleep_for(char const* function, char const* argument, int count, std::int64_t unit_us) {
-    if (count < 0) [[unlikely]] {
-        note_slip({function, argument, "at least 0", "it takes no time"}, count);
-    }
+    pogosim::check_duration(argument, count, pogosim::NoteSlip{function});
     pogosim::sleep_until(context.clock_us() + std::max(0, count) * unit_us);
 }
 

@@ -31,4 +31,13 @@ inline void drift_clock(World& world, std::uint32_t robot, std::int64_t since_us
     clock_us += std::max(world.devices.clock_drift_us[robot], -slept_us / 2);
 }
 
+/// The clock of a robot goes on by the time that its code has taken, us. It shows whole microseconds; what is left of
+/// them is in `rest_us`, and counts the next time.
+inline void take_time(World& world, std::uint32_t robot, double us, double& rest_us) {
+    rest_us += us;
+    double const whole_us = std::floor(rest_us);
+    world.devices.clock_us[robot] += static_cast<std::int64_t>(whole_us);
+    rest_us -= whole_us;
+}
+
 }  // namespace pogosim

@@ -16,6 +16,13 @@ struct Slip {
     std::string_view outcome;   // "1023 is used"
 };
 
+/// The same without the function.
+struct WrongArgument {
+    std::string_view name;
+    std::string_view expected;
+    std::string_view outcome;
+};
+
 template <class Value>
 std::string slip_text(Slip const& slip, Value const& value) {
     return fmt::format("{}{}{} is {}, expected {}; {}", slip.function,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "device/arguments.hpp"
 #include "firmware/library.hpp"
 
 namespace pogosim {
@@ -28,11 +29,11 @@ CallOutcome sleep_until(FirmwareCall& call, std::int64_t clock_us) {
     return CallOutcome::sleeps;
 }
 
+/// Sleeps for microseconds, milliseconds or seconds.
 template <std::int64_t UnitUs>
 CallOutcome sleep(FirmwareCall& call) {
-    if (call.number(0) < 0) {
-        call.note_slip("the time", "at least 0", "it takes no time", call.number(0));
-    }
+    constexpr char const* unit = UnitUs == 1 ? "microseconds" : UnitUs == kUsPerMs ? "milliseconds" : "seconds";
+    check_duration(unit, call.number(0), call);
     return sleep_until(call, call.clock_us() + std::max(0, call.number(0)) * UnitUs);
 }
 
@@ -80,10 +81,6 @@ CallOutcome has_expired(FirmwareCall& call) {
 
 CallOutcome wait_for_expiry(FirmwareCall& call) {
     return sleep_until(call, call.clock_us() + left_us(call));
-}
-
-CallOutcome do_nothing(FirmwareCall& /*call*/) {
-    return CallOutcome::returns;
 }
 
 }  // namespace

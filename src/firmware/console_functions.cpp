@@ -30,10 +30,6 @@ CallOutcome write_character(FirmwareCall& call) {
     return CallOutcome::returns;
 }
 
-CallOutcome do_nothing(FirmwareCall& /*call*/) {
-    return CallOutcome::returns;
-}
-
 CallOutcome has_no_input(FirmwareCall& call) {
     call.give(0);
     return CallOutcome::returns;
@@ -41,7 +37,7 @@ CallOutcome has_no_input(FirmwareCall& call) {
 
 /// Nothing is ever typed.
 CallOutcome wait_for_input(FirmwareCall& call) {
-    call.note_slip("the terminal", "a key to be typed", "the robot waits for ever", "not simulated");
+    call.note_slip({"the terminal", "a key to be typed", "the robot waits for ever"}, "not simulated");
     return CallOutcome::ends;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "device/arguments.hpp"
 #include "device/battery.hpp"
 #include "device/chips.hpp"
 #include "device/imu.hpp"
@@ -20,18 +21,12 @@ namespace pogosim {
 
 namespace {
 
-CallOutcome do_nothing(FirmwareCall& /*call*/) {
-    return CallOutcome::returns;
-}
-
 // ---- LEDs
 
-void set_colour(FirmwareCall const& call, std::size_t led) {
-    if (led >= call.world.spec_of(call.robot).model.leds.size()) {
-        call.note_slip("id", "one of the leds of this robot's model, from 0", "nothing is set", led);
-        return;
+void set_colour(FirmwareCall const& call, std::uint8_t led) {
+    if (is_led(call.model(), led, call)) {
+        set_led(call.world, call.robot, led, {call.byte(0), call.byte(1), call.byte(2)});
     }
-    set_led(call.world, call.robot, led, {call.byte(0), call.byte(1), call.byte(2)});
 }
 
 CallOutcome set_head_colour(FirmwareCall& call) {
@@ -50,31 +45,17 @@ Motors& motors_of(FirmwareCall const& call) {
     return call.world.devices.motors[call.robot];
 }
 
-bool is_motor(FirmwareCall const& call) {
-    bool const is_known = call.argument(0) < kMotorCount;
-    if (!is_known) {
-        call.note_slip("motor", "motorR (0), motorL (1) or motorB (2)", "nothing is set", call.number(0));
-    }
-    return is_known;
-}
-
 CallOutcome set_power(FirmwareCall& call) {
-    if (!is_motor(call)) {
-        return CallOutcome::returns;
+    if (is_motor(call.number(0), call)) {
+        check_power(call.half(1), call);
+        set_motor_power(call.world, call.robot, call.number(0), call.half(1));
     }
-    std::uint16_t const power = call.half(1);
-    if (power > kFullMotorPower) {
-        call.note_slip("value", "0 to 1023 (motorFull)", "1023 is used", power);
-    }
-    set_motor_power(call.world, call.robot, call.number(0), power);
     return CallOutcome::returns;
 }
 
 CallOutcome set_direction(FirmwareCall& call) {
-    if (is_motor(call)) {
-        if (call.byte(1) > 1) {
-            call.note_slip("value", "0 or 1", "1 is used", call.byte(1));
-        }
+    if (is_motor(call.number(0), call)) {
+        check_direction(call.byte(1), call);
         set_motor_direction(call.world, call.robot, call.number(0), call.byte(1));
     }
     return CallOutcome::returns;
@@ -92,9 +73,18 @@ CallOutcome get_stored(FirmwareCall& call) {
     return CallOutcome::returns;
 }
 
-template <auto Values>
-CallOutcome set_stored(FirmwareCall& call) {
-    call.read(call.argument(0), std::as_writable_bytes(std::span(motors_of(call).*Values)));
+CallOutcome set_stored_directions(FirmwareCall& call) {
+    auto& stored = motors_of(call).stored_direction;
+    call.read(call.argument(0), std::as_writable_bytes(std::span(stored)));
+    check_stored_directions(stored, call);
+    call.give(0);
+    return CallOutcome::returns;
+}
+
+CallOutcome set_stored_powers(FirmwareCall& call) {
+    auto& stored = motors_of(call).stored_power;
+    call.read(call.argument(0), std::as_writable_bytes(std::span(stored)));
+    check_stored_powers(stored, call);
     call.give(0);
     return CallOutcome::returns;
 }
@@ -108,10 +98,10 @@ bool has_body(FirmwareCall const& call) {
 CallOutcome get_light(FirmwareCall& call) {
     std::uint8_t const sensor = call.byte(0);
     call.give_signed(-1);
-    if (sensor >= call.world.spec_of(call.robot).model.light_sensors.size()) {
-        call.note_slip("sensor_number", "one of the light_sensors of this robot's model, from 0", "-1 is returned",
-                       sensor);
-    } else if (has_body(call)) {
+    if (is_light_sensor(call.model(), sensor, call) && has_body(call)) {
+        if (call.world.lamps.empty()) {
+            call.warn_once(kNoLamps);
+        }
         call.give_signed(read_photosensor(call.world, call.robot, sensor));
     }
     return CallOutcome::returns;
@@ -155,7 +145,7 @@ CallOutcome has_not_found_magnetometer(FirmwareCall& call) {
 CallOutcome take_field(FirmwareCall& call) {
     auto const counts = read_magnetometer(call.world, call.robot);
     if (!counts) {
-        call.note_slip("the pose of the robot", "a pose within magnetometer.domain", "1 is returned", "outside");
+        call.note_slip({"the pose of the robot", "a pose within magnetometer.domain", "1 is returned"}, "outside");
         call.give(1);
         return CallOutcome::returns;
     }
@@ -203,9 +193,9 @@ std::span<LibraryFunction const> device_functions() {
         LibraryFunction{"pogobot_motor_dir_set", set_direction, &CallTimes::motor_us},
         LibraryFunction{"pogobot_motor_dir_current_status", get_directions},
         LibraryFunction{"pogobot_motor_dir_mem_get", get_stored<&Motors::stored_direction>, &CallTimes::flash_read_us},
-        LibraryFunction{"pogobot_motor_dir_mem_set", set_stored<&Motors::stored_direction>, &CallTimes::flash_write_us},
+        LibraryFunction{"pogobot_motor_dir_mem_set", set_stored_directions, &CallTimes::flash_write_us},
         LibraryFunction{"pogobot_motor_power_mem_get", get_stored<&Motors::stored_power>, &CallTimes::flash_read_us},
-        LibraryFunction{"pogobot_motor_power_mem_set", set_stored<&Motors::stored_power>, &CallTimes::flash_write_us},
+        LibraryFunction{"pogobot_motor_power_mem_set", set_stored_powers, &CallTimes::flash_write_us},
         LibraryFunction{"pogobot_photosensors_read", get_light, &CallTimes::light_sensor_us},
         LibraryFunction{"pogobot_battery_voltage_read", get_voltage, &CallTimes::light_sensor_us},
         LibraryFunction{"pogobot_imu_read", get_motion, &CallTimes::imu_us},

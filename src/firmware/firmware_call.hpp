@@ -35,13 +35,15 @@ struct FirmwareOutbox {
     }
 };
 
-/// A firmware gives a function an address where there is no memory.
+/// A firmware gives a function an address that it cannot use.
 struct WrongAddress : std::exception {
     std::string_view function;
     std::uint32_t address;
+    std::string_view why;
 
-    WrongAddress(std::string_view its_function, std::uint32_t its_address)
-        : function(its_function), address(its_address) {}
+    WrongAddress(std::string_view its_function, std::uint32_t its_address,
+                 std::string_view its_why = "where there is no memory that it could use")
+        : function(its_function), address(its_address), why(its_why) {}
     char const* what() const noexcept override { return "wrong address"; }
 };
 
@@ -84,14 +86,25 @@ struct FirmwareCall {
     void write(std::uint32_t address, std::span<std::byte const> bytes) const;
     std::uint32_t read_word(std::uint32_t address) const;
     void write_word(std::uint32_t address, std::uint32_t value) const;
+    void require_aligned(std::uint32_t address) const;
 
     /// Warns once in a run for each function and argument.
     template <class Value>
-    [[gnu::cold, gnu::noinline]] void note_slip(std::string_view argument_name, std::string_view expected,
-                                                std::string_view outcome, Value const& value) const {
-        Slip const slip{function, argument_name, expected, outcome};
+    [[gnu::cold, gnu::noinline]] void note_slip(WrongArgument const& wrong, Value const& value) const {
+        Slip const slip{function, wrong.name, wrong.expected, wrong.outcome};
         out.said.push_back({robot, ticks(), slip, slip_text(slip, value)});
     }
+
+    /// Warns once in a run for each function.
+    void warn_once(std::string_view what) const;
+
+    /// Notes wrong arguments, see device/arguments.hpp.
+    template <class Value>
+    void operator()(WrongArgument const& wrong, Value const& value) const {
+        note_slip(wrong, value);
+    }
+
+    RobotModel const& model() const { return world.spec_of(robot).model; }
 };
 
 /// How calls count that may be in a loop that waits, see kFreeCalls. Before its main loop begins, a program waits only

@@ -4,23 +4,16 @@
 #include <array>
 #include <cstdint>
 
+#include "device/arguments.hpp"
 #include "firmware/library.hpp"
 
 namespace pogosim {
 
 namespace {
 
-bool is_page(FirmwareCall const& call, std::uint16_t page, std::string_view outcome) {
-    if (page >= call.world.spec_of(call.robot).model.flash_pages) {
-        call.note_slip("page", "one of the flash_pages of this robot's model, from 0", outcome, page);
-        return false;
-    }
-    return true;
-}
-
 CallOutcome read_user_page(FirmwareCall& call) {
     std::uint16_t const page = call.half(0);
-    if (is_page(call, page, "nothing is read")) {
+    if (is_flash_page(call.model(), page, "nothing is read", call)) {
         FlashPage bytes{};
         read_page(call.world.devices.flash[call.robot], page, bytes.data());
         call.write(call.argument(1), bytes);
@@ -30,14 +23,15 @@ CallOutcome read_user_page(FirmwareCall& call) {
 
 CallOutcome write_user_page(FirmwareCall& call) {
     std::uint16_t const page = call.half(0);
-    if (!is_page(call, page, "nothing is written")) {
+    if (!is_flash_page(call.model(), page, "nothing is written", call)) {
         return CallOutcome::returns;
     }
     FlashPage bytes{};
     call.read(call.argument(1), bytes);
     if (!write_page(call.world, call.robot, page, bytes.data())) {
-        call.note_slip("page", "one that was erased before, since a write only clears bits (flash: nor)",
-                       "it does not contain what was written; call erase_write_section_flash() first", page);
+        call.note_slip({"page", "one that was erased before, since a write only clears bits (flash: nor)",
+                        "it does not contain what was written; call erase_write_section_flash() first"},
+                       page);
     }
     return CallOutcome::returns;
 }

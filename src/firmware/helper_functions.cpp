@@ -10,11 +10,6 @@ namespace pogosim {
 
 namespace {
 
-/// The state of the devices at the start of a run is that after pogobot_init().
-CallOutcome do_nothing(FirmwareCall& /*call*/) {
-    return CallOutcome::returns;
-}
-
 CallOutcome get_id(FirmwareCall& call) {
     call.give(id_on_air(call.world.robots.id[call.robot]));
     return CallOutcome::returns;

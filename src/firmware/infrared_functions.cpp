@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "device/arguments.hpp"
 #include "device/remote_control.hpp"
 #include "firmware/library.hpp"
 #include "interface/pogobase_inside.hpp"
@@ -73,9 +74,7 @@ std::uint32_t put_on_air(FirmwareCall& call, Packet const& packet) {
 /// The payload of a message; nothing, with a warning, for one that cannot be sent.
 std::optional<std::span<std::byte const>> read_payload(FirmwareCall const& call, std::uint32_t address,
                                                        std::uint16_t size, Payload& into) {
-    if (size > kMostPayloadBytes) {
-        call.note_slip("the length of the message", "0 to 382 bytes (MAX_PAYLOAD_SIZE_BYTES)",
-                       "nothing is sent, and the function returns 1", size);
+    if (!is_payload_size(size, call)) {
         return std::nullopt;
     }
     std::span<std::byte> const bytes = std::span(into).first(size);
@@ -102,20 +101,8 @@ std::uint32_t send_short(FirmwareCall& call, std::uint8_t emitters, std::uint32_
 }
 
 /// The emitters of a direction, which is the first argument.
-std::uint8_t emitters_of_direction(FirmwareCall const& call) {
-    std::int32_t const direction = call.number(0);
-    if (direction < 0 || direction > static_cast<std::int32_t>(ir_all)) {
-        call.note_slip("dir", "ir_front (0) to ir_left (3), or ir_all (4)", "the message goes in all directions",
-                       direction);
-    }
-    if (direction < 0 || direction >= static_cast<std::int32_t>(kMostFaces)) {
-        return all_faces(call);
-    }
-    auto const emitters = static_cast<std::uint8_t>(all_faces(call) & 1U << direction);
-    if (emitters == 0) {
-        call.note_slip("dir", "one of the faces of this robot's model, from 0", "nothing is sent", direction);
-    }
-    return emitters;
+std::uint8_t emitters_of(FirmwareCall const& call) {
+    return emitters_of_direction(all_faces(call), call.number(0), call);
 }
 
 CallOutcome send_long_to_all(FirmwareCall& call) {
@@ -134,7 +121,7 @@ CallOutcome send_long_by_each(FirmwareCall& call) {
 }
 
 CallOutcome send_long_to_one(FirmwareCall& call) {
-    call.give(send_long(call, emitters_of_direction(call), call.argument(1), call.half(2)));
+    call.give(send_long(call, emitters_of(call), call.argument(1), call.half(2)));
     return CallOutcome::returns;
 }
 
@@ -144,7 +131,7 @@ CallOutcome send_short_to_all(FirmwareCall& call) {
 }
 
 CallOutcome send_short_to_one(FirmwareCall& call) {
-    call.give(send_short(call, emitters_of_direction(call), call.argument(1), call.half(2)));
+    call.give(send_short(call, emitters_of(call), call.argument(1), call.half(2)));
     return CallOutcome::returns;
 }
 
@@ -161,10 +148,7 @@ CallOutcome send_raw_long(FirmwareCall& call) {
     call.write(message, bytes);
     std::uint8_t const list = header.emitting_power_list;
     std::uint8_t const emitters = emitters_in(call.world, call.robot, list);
-    if (emitters == 0) {
-        call.note_slip("_emitting_power_list", "a power that is not 0 for at least one emitter",
-                       "nothing is sent, as on a real robot", list);
-    }
+    check_emitters(emitters, list, call);
     call.give(send_long(call, emitters, list, message + sizeof(FrameHeader), header.payload_length));
     return CallOutcome::returns;
 }
@@ -175,7 +159,7 @@ CallOutcome send_raw_short(FirmwareCall& call) {
     std::array<std::byte, sizeof(header)> bytes{};
     call.read(message, bytes);
     std::memcpy(&header, bytes.data(), bytes.size());
-    call.give(send_short(call, emitters_of_direction(call), message + sizeof(header), header.payload_length));
+    call.give(send_short(call, emitters_of(call), message + sizeof(header), header.payload_length));
     return CallOutcome::returns;
 }
 
@@ -186,7 +170,7 @@ CallOutcome send_packet(FirmwareCall& call) {
     std::array<std::byte, most_bytes> buffer;
     std::uint32_t const size = call.argument(2);
     if (size > most_bytes) {
-        call.note_slip("the length of the packet", "0 to 390 bytes", "its rest is not sent", size);
+        call.note_slip({"the length of the packet", "0 to 390 bytes", "its rest is not sent"}, size);
     }
     std::span<std::byte> const bytes = std::span(buffer).first(std::min(size, most_bytes));
     call.read(call.argument(1), bytes);
@@ -197,9 +181,7 @@ CallOutcome send_packet(FirmwareCall& call) {
 }
 
 CallOutcome set_emitter_power(FirmwareCall& call) {
-    if (call.byte(0) > kMostIrPower) {
-        call.note_slip("power", "0 to 3", "3 is used", call.byte(0));
-    }
+    check_emitter_power(call.byte(0), call);
     set_ir_power(call.world, call.robot, call.byte(0));
     return CallOutcome::returns;
 }
@@ -227,8 +209,9 @@ CallOutcome clear_queue(FirmwareCall& call) {
 CallOutcome take_message(FirmwareCall& call) {
     std::optional<Message> const message = receive(call.world, call.robot);
     if (!message) {
-        call.note_slip("the queue", "a message in it (call pogobot_infrared_message_available() first)",
-                       "nothing is written", "empty");
+        call.note_slip(
+            {"the queue", "a message in it (call pogobot_infrared_message_available() first)", "nothing is written"},
+            "empty");
         return CallOutcome::returns;
     }
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES), so nothing is written behind the payload.
@@ -238,6 +221,7 @@ CallOutcome take_message(FirmwareCall& call) {
 }
 
 CallOutcome get_error_counter(FirmwareCall& call) {
+    check_receiver(call.byte(1), call);
     call.write(call.argument(0), std::array<std::byte, sizeof(slip_error_counter_s)>{});
     return CallOutcome::returns;
 }
@@ -261,10 +245,6 @@ CallOutcome initialise(FirmwareCall& call) {
 CallOutcome get_muted(FirmwareCall& call) {
     look_at_mute(call);
     call.give(call.world.devices.infrared[call.robot].is_muted != 0 ? 1 : 0);
-    return CallOutcome::returns;
-}
-
-CallOutcome do_nothing(FirmwareCall& /*call*/) {
     return CallOutcome::returns;
 }
 

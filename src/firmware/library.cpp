@@ -4,6 +4,10 @@
 
 namespace pogosim {
 
+CallOutcome do_nothing(FirmwareCall& /*call*/) {
+    return CallOutcome::returns;
+}
+
 std::span<LibraryFunction const> library_functions() {
     static std::vector<LibraryFunction> const all = [] {
         std::vector<LibraryFunction> joined;

@@ -7,6 +7,9 @@
 
 namespace pogosim {
 
+/// What functions do that only set up hardware: devices are ready at the start of a run.
+CallOutcome do_nothing(FirmwareCall& call);
+
 std::span<LibraryFunction const> clock_functions();
 std::span<LibraryFunction const> console_functions();
 std::span<LibraryFunction const> device_functions();

@@ -57,8 +57,7 @@ std::string text_of(Stop const& stop, FirmwareRobot const& robot) {
 }
 
 std::string text_of(WrongAddress const& wrong) {
-    return fmt::format("it gave {}() the address 0x{:08x}, where there is no memory that it could use", wrong.function,
-                       wrong.address);
+    return fmt::format("it gave {}() the address 0x{:08x}, {}", wrong.function, wrong.address, wrong.why);
 }
 
 }  // namespace pogosim

@@ -2,6 +2,7 @@
 // kind of mistake. The headers say what happens to such values.
 #pragma once
 
+#include "device/arguments.hpp"
 #include "device/slip.hpp"
 #include "robot/context.hpp"
 
@@ -14,6 +15,22 @@ template <class Value>
         context.services->warn_once_of({.text = slip.outcome, .function = slip.function, .argument = slip.argument},
                                        "{}", slip_text(slip, value));
     }
+}
+
+/// Notes wrong arguments of a function, see device/arguments.hpp.
+struct NoteSlip {
+    char const* function;
+
+    template <class Value>
+    void operator()(WrongArgument const& wrong, Value const& value) const {
+        note_slip({function, wrong.name, wrong.expected, wrong.outcome}, value);
+    }
+};
+
+/// The model of the running robot; in a callback of the whole run, one that has every part.
+inline RobotModel const& own_model() {
+    static RobotModel const whole;
+    return context.has_robot() ? context.spec().model : whole;
 }
 
 }  // namespace pogosim

@@ -38,6 +38,15 @@ inline void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameH
     ++count;
 }
 
+void TransmissionQueue::append(TransmissionQueue const& others) {
+    std::size_t const offset = payloads.size();
+    for (Transmission transmission : others.transmissions) {
+        transmission.payload_offset += offset;
+        transmissions.push_back(transmission);
+    }
+    payloads.insert(payloads.end(), others.payloads.begin(), others.payloads.end());
+}
+
 Mailboxes::Mailboxes(std::span<int const> queue_sizes, std::size_t max_payload_bytes)
     : queues_(queue_sizes.size()),
       far_(queue_sizes.size()),

@@ -54,6 +54,8 @@ struct TransmissionQueue {
     std::span<std::byte const> payload_of(Transmission const& transmission) const {
         return std::span(payloads).subspan(transmission.payload_offset, transmission.header.payload_length);
     }
+    /// Adds those of another queue behind its own.
+    void append(TransmissionQueue const& others);
     void clear() {
         transmissions.clear();
         payloads.clear();
