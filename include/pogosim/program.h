@@ -60,6 +60,11 @@ void pogosim_sleep_after_tick(int milliseconds);
 /// The robot's program reads its clock, which takes time if it does so again and again.
 void pogosim_let_time_pass(void);
 
+/// The main loop has called a function: on the robot, this takes time.
+void pogosim_take_time_of(void (*function)(void));
+/// It has called user_step in a tick, or there is none (null).
+void pogosim_take_time_of_tick(void (*user_step)(void));
+
 /// Calls msg_tx_fn for the main loop, and notes whether it sends what it says.
 bool pogosim_call_msg_tx_fn(bool (*send)(void));
 

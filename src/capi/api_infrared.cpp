@@ -14,6 +14,7 @@
 #include "process/crash_handler.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
+#include "robot/function_times.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/slip.hpp"
@@ -309,5 +310,6 @@ bool pogosim_call_msg_tx_fn(bool (*send)()) {
     pogosim::SendResults& results = context.controller->send_results;
     results.sent += context.devices().messages_sent[context.device] > before ? 1U : 0U;
     results.said += is_sent ? 1U : 0U;
+    pogosim::take_time_of(reinterpret_cast<void (*)()>(send));
     return is_sent;
 }

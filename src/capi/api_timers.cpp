@@ -8,6 +8,7 @@
 #include "pogosim/program.h"
 #include "process/forked_child.hpp"
 #include "robot/context.hpp"
+#include "robot/function_times.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/slip.hpp"
 #include "robot/waiting.hpp"
@@ -139,6 +140,14 @@ void pogosim_sleep(int seconds) {
 void pogosim_let_time_pass() {
     require_robot("current_time_milliseconds");
     pogosim::note_clock_read();
+}
+
+void pogosim_take_time_of(void (*function)()) {
+    pogosim::take_time_of(function);
+}
+
+void pogosim_take_time_of_tick(void (*user_step)()) {
+    pogosim::take_time_of_tick(user_step);
 }
 
 /// The main loop's own way to read a stopwatch: pogobot_stopwatch_get_elapsed_microseconds().

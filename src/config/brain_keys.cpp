@@ -17,7 +17,9 @@
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/find_file.hpp"
+#include "config/function_costs.hpp"
 #include "config/shape_keys.hpp"
+#include "config/value_or_file.hpp"
 #include "world/mailbox.hpp"
 
 namespace pogosim {
@@ -26,6 +28,8 @@ namespace {
 
 constexpr std::string_view kBrain = "program, host, {script: FILE}, or a firmware, such as robot.elf";
 constexpr std::string_view kScript = "the name of a file with a list `script`, or that list";
+constexpr std::string_view kScriptFile =
+    "a script has a list `script`, such as script: [{time_s: 0, motors: [500, 500, 0]}], and nothing else";
 constexpr std::string_view kMotors = "a list of three powers, right, left and back, from -1023 to 1023";
 constexpr std::string_view kLed = "a list of red, green and blue, from 0 to 255";
 
@@ -132,21 +136,6 @@ ScriptSpec read_entries(Place const& place, Reading& reading, Node& values) {
     return script;
 }
 
-ScriptSpec read_script_file(Place const& place, Reading& reading, Node& values) {
-    FoundFile const found = search_file(reading.configuration, place.node.scalar);
-    if (found.path.empty()) {
-        fail_at(place, fmt::format("there is no file '{}'{}", shown(place.node.scalar), found.searched));
-    }
-    Node const file = read_yaml_file(found.path.string());
-    reading.object_files.push_back({found.path, "the script"});
-    Node const* const list = file.find("script");
-    if (list == nullptr || file.entries.size() != 1) {
-        fail_at({file, "script"},
-                "a script has a list `script`, such as script: [{time_s: 0, motors: [500, 500, 0]}], and nothing else");
-    }
-    return read_entries({*list, "script"}, reading, values);
-}
-
 std::span<Key<FirmwareSpec> const> firmware_keys() {
     using K = Key<FirmwareSpec>;
     static std::array const keys{
@@ -190,11 +179,16 @@ BrainSpec in_place_of_program(MapReader& robot, RobotModel const& model) {
     if (model.sends_along_outline) {
         return ScriptSpec();
     }
+    Reading& reading = robot.reading();
+    auto const is_it = [&](ObjectFile const& file) { return file.path == reading.firmware; };
+    if (std::ranges::none_of(reading.object_files, is_it)) {
+        reading.object_files.push_back({reading.firmware, "the firmware"});
+    }
     Node value;
     value.kind = Node::Kind::scalar;
-    value.scalar = robot.reading().firmware;
+    value.scalar = reading.firmware;
     robot.set_value("brain", std::move(value));
-    return FirmwareSpec{.file = robot.reading().firmware};
+    return FirmwareSpec{.file = reading.firmware};
 }
 
 ScriptSpec read_script(MapReader& robot, Node const& brain) {
@@ -203,14 +197,10 @@ ScriptSpec read_script(MapReader& robot, Node const& brain) {
     if (brain.entries.size() != 1 || script == nullptr) {
         fail_expected({brain, path}, kBrain);
     }
-    Place const place{*script, path + ".script"};
+    WrittenValue const written =
+        value_or_file({*script, path + ".script"}, {"script", kScript, kScriptFile, "the script"}, robot.reading());
     Node entries;
-    bool const is_file = script->kind == Node::Kind::scalar && !script->scalar.empty();
-    if (!is_file && script->kind != Node::Kind::sequence) {
-        fail_expected(place, kScript);
-    }
-    ScriptSpec spec =
-        is_file ? read_script_file(place, robot.reading(), entries) : read_entries(place, robot.reading(), entries);
+    ScriptSpec spec = read_entries({written.node, written.path}, robot.reading(), entries);
     Node value;
     value.kind = Node::Kind::map;
     value.entries.emplace_back("script", std::move(entries));
@@ -241,8 +231,12 @@ std::span<Key<RobotSpec> const> brain_keys() {
             one_of(&RobotSpec::cpu_time,
                    {{"off", CpuTime::off}, {"counted", CpuTime::counted}, {"false", CpuTime::off}}),
             any(), "",
-            "Whether the code of a firmware takes time. off, which YAML 1.1 reads as false: none. counted: as much as "
-            "on the robot, by the cycles of its instructions and the times of its calls (`processor`)."},
+            "Whether the code of robots takes time. off, which YAML 1.1 reads as false: none. counted: as much as on "
+            "the robot; of a firmware by the cycles of its instructions and the times of its calls (`processor`), of a "
+            "program in C by `function_costs`."},
+        Key<RobotSpec>{"function_costs", Elsewhere{kFunctionCosts}, any(), "",
+                       "What the functions of a program in C take on the robot, with cpu_time: counted; see its own "
+                       "table. pogosim profile --costs FILE measures it."},
     };
     return keys;
 }

@@ -229,15 +229,27 @@ void check_light_levels(Scenario const& scenario) {
     }
 }
 
-/// Warns of code that is to take time, but is not that of a robot's processor.
+/// Warns of code that is to take time, and takes none, because nothing says how much.
 void check_cpu_time(Scenario const& scenario) {
     for (ObjectConfig const& object : scenario.objects) {
-        bool const is_counted = object.spec.robot && object.spec.robot->cpu_time == CpuTime::counted;
-        if (is_counted && object.nb > 0 && !std::holds_alternative<FirmwareSpec>(object.spec.robot->brain)) {
+        if (!object.spec.robot || object.nb == 0) {
+            continue;
+        }
+        RobotSpec const& robot = *object.spec.robot;
+        bool const is_counted = robot.cpu_time == CpuTime::counted;
+        bool const is_program = needs_program(robot.brain);
+        std::string const place = shown(object.category);
+        if (is_counted && is_program && robot.function_costs.empty()) {
             log().warn(
-                "{}: objects.{}.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware "
-                "FILE); the code of these robots takes no time",
-                object.line, shown(object.category));
+                "{}: objects.{}.cpu_time: counted has an effect on firmware (brain: FILE.elf, or --firmware FILE), and "
+                "on programs in C with function_costs; the code of these robots takes no time",
+                object.line, place);
+        } else if (is_counted && !is_program && !std::holds_alternative<FirmwareSpec>(robot.brain)) {
+            log().warn("{}: objects.{}.cpu_time: counted has no effect on robots that no code drives", object.line,
+                       place);
+        } else if (!robot.function_costs.empty() && !(is_counted && is_program)) {
+            log().warn("{}: objects.{}.function_costs have an effect on programs in C alone, with cpu_time: counted",
+                       object.line, place);
         }
     }
 }

@@ -9,6 +9,7 @@
 
 #include "config/brain_keys.hpp"
 #include "config/flash_keys.hpp"
+#include "config/function_costs.hpp"
 #include "config/lamp_keys.hpp"
 #include "config/model_keys.hpp"
 #include "config/reception_keys.hpp"
@@ -238,6 +239,7 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     reader.read(sensor_keys(), robot.sensors);
     reader.read(brain_keys(), robot);
     reader.collect([&] { robot.brain = read_brain(reader, robot.model); });
+    reader.collect([&] { robot.function_costs = read_function_costs(reader); });
     reader.read(battery_map_keys(), robot);
     reader.collect([&] { robot.battery = read_battery(reader); });
     reader.read(ir_keys(), robot.ir);

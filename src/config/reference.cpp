@@ -6,6 +6,7 @@
 
 #include "config/brain_keys.hpp"
 #include "config/flash_keys.hpp"
+#include "config/function_costs.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/model_keys.hpp"
 #include "config/object_parts.hpp"
@@ -51,6 +52,9 @@ std::vector<KeyGroup> configuration_reference() {
         {"objects.<category>.brain.script.<number>", "", "What a script does at a time.", script_entry_keys()});
 
     groups.push_back({"objects.<category>.brain", "", "A firmware.", firmware_map_keys()});
+
+    groups.push_back({"objects.<category>.function_costs.<function>", "",
+                      "What a call of a function of a program in C takes on the robot.", function_cost_keys()});
 
     for (ModelTable& table : model_tables()) {
         groups.push_back(

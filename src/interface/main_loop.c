@@ -20,12 +20,17 @@ POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 #ifdef REAL_ROBOT
 #define LET_TIME_PASS()
 #define CALL_MSG_TX_FN() msg_tx_fn()
+#define TAKE_TIME_OF(function)
+#define TAKE_TIME_OF_TICK(user_step)
 #else
 #include "pogosim/program.h"
 // In the simulator, a program that reads its clock again and again waits, and may go on in another thread. It may do so
 // only here, where no address of a thread-local variable is kept: in this file, the timers' functions do not wait.
 #define LET_TIME_PASS() pogosim_let_time_pass()
 #define CALL_MSG_TX_FN() pogosim_call_msg_tx_fn(msg_tx_fn)
+// Code takes no time in the simulator, but what the configuration says it would take on the robot.
+#define TAKE_TIME_OF(function) pogosim_take_time_of((void (*)(void))(function))
+#define TAKE_TIME_OF_TICK(user_step) pogosim_take_time_of_tick(user_step)
 #endif
 
 uint32_t current_time_milliseconds(void) {
@@ -69,6 +74,7 @@ static void process_received_messages(void) {
         message_t message;
         pogobot_infrared_recover_next_message(&message);
         msg_rx_fn(&message);
+        TAKE_TIME_OF(msg_rx_fn);
         nb_msgs_recv++;
     }
     pogobot_infrared_clear_message_queue();
@@ -101,6 +107,7 @@ void pogo_main_loop_step(void (*user_step)(void)) {
     if (user_step) {
         user_step();
     }
+    TAKE_TIME_OF_TICK(user_step);
     send_message_by_chance();
     process_received_messages();
     sleep_until_next_tick();

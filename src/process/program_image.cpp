@@ -254,6 +254,10 @@ std::vector<char> ProgramImage::bytes_of_file() const {
     return read_file(file).value_or(std::vector<char>());
 }
 
+std::vector<ProgramFunction> ProgramImage::functions() const {
+    return functions_of(bytes_of_file());
+}
+
 ProgramSymbols ProgramImage::symbols() const {
     if (loaded_symbols) {
         return *loaded_symbols;

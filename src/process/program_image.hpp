@@ -37,6 +37,9 @@ struct ProgramImage {
     /// What its file says.
     ProgramSymbols symbols() const;
 
+    /// The functions that its file names; none if it has changed since.
+    std::vector<ProgramFunction> functions() const;
+
     /// The variables of which each robot may have its own, see ProgramSymbols::memory.
     std::vector<std::span<std::byte>> memory_of_robots() const;
 };

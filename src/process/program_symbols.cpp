@@ -195,25 +195,51 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
     return found;
 }
 
-std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
+namespace {
+
+/// Calls see(symbol, name) for each function that is in the file.
+template <class See>
+void for_each_function(std::span<char const> bytes, See const& see) {
     ElfFile const file = elf_file(bytes);
-    std::string found;
     for (Elf64_Shdr const& section : file.sections) {
         if (section.sh_type == SHT_SYMTAB || section.sh_type == SHT_DYNSYM) {
             for_each_symbol(file, section, [&](Elf64_Sym const& symbol, std::string_view name) {
-                bool const is_function = ELF64_ST_TYPE(symbol.st_info) == STT_FUNC && symbol.st_shndx != SHN_UNDEF;
-                if (is_function && address >= symbol.st_value && address - symbol.st_value < symbol.st_size) {
-                    found = name;
+                if (ELF64_ST_TYPE(symbol.st_info) == STT_FUNC && symbol.st_shndx != SHN_UNDEF) {
+                    see(symbol, name);
                 }
             });
         }
     }
+}
+
+}  // namespace
+
+std::vector<ProgramFunction> functions_of(std::span<char const> bytes) {
+    std::vector<ProgramFunction> functions;
+    for_each_function(bytes, [&](Elf64_Sym const& symbol, std::string_view name) {
+        std::string const written = name_by_symbol(std::string(name));
+        functions.push_back({.name = written.substr(0, written.find('(')), .address = symbol.st_value});
+    });
+    return functions;
+}
+
+std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
+    std::string found;
+    for_each_function(bytes, [&](Elf64_Sym const& symbol, std::string_view name) {
+        if (address >= symbol.st_value && address - symbol.st_value < symbol.st_size) {
+            found = name;
+        }
+    });
     return found;
 }
 
 #else
 
 ProgramSymbols symbols_of(std::span<char const> /*bytes*/) {
+    return {};
+}
+
+std::vector<ProgramFunction> functions_of(std::span<char const> /*bytes*/) {
     return {};
 }
 

@@ -41,6 +41,13 @@ std::string name_by_symbol(std::string const& symbol);
 /// `file`: the bytes of an executable or a shared object, which need not be well-formed.
 ProgramSymbols symbols_of(std::span<char const> file);
 
+/// A function of a program.
+struct ProgramFunction {
+    std::string name;            // as the program writes it: "user_step", also for "user_step()" in C++
+    std::uintptr_t address = 0;  // from where the program is loaded
+};
+std::vector<ProgramFunction> functions_of(std::span<char const> file);
+
 /// The function with this address, from where the program is loaded, as the linker knows it; empty: there is none.
 std::string function_at(std::span<char const> file, std::uintptr_t address);
 

@@ -53,6 +53,7 @@ struct SendResults {
 };
 
 class Fiber;
+class FunctionTimes;
 
 struct Controller {
     std::int64_t went_on_us = 0;  // its time when it got the processor
@@ -71,7 +72,9 @@ struct Controller {
     SendResults send_results;
     RandomStream random;  // rand() and srand() of the program
     RandomSeeds seeds;
-    std::string printed;  // a line not yet complete
+    std::string printed;                   // a line not yet complete
+    FunctionTimes const* times = nullptr;  // null: its code takes no time
+    double rest_us = 0.0;                  // less than a microsecond, for which its clock has not gone on
 };
 
 }  // namespace pogosim

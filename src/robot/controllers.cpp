@@ -119,6 +119,7 @@ Controllers::Controllers(ProgramImage image, World& world, RunServices& services
     }
     allocate_user_data();
     draw_seeds(seed);
+    count_time();
 }
 
 std::size_t Controllers::driven_count() const {
@@ -203,6 +204,22 @@ void Controllers::draw_seeds(std::uint64_t seed) {
     }
     system_.random = random_of_program(seed, kNone);
     system_.seeds = random_seeds(seed, kNone, 0);
+}
+
+/// The code of some categories takes time of the robots' clocks.
+void Controllers::count_time() {
+    for (std::uint32_t category = 0; category < world_.categories.size(); ++category) {
+        auto const& [name, spec] = world_.categories[category];
+        RobotRange const range = robots_of(world_, category);
+        bool const is_program = spec.robot && needs_program(spec.robot->brain) && range.size() > 0;
+        if (!is_program || spec.robot->cpu_time != CpuTime::counted || spec.robot->function_costs.empty()) {
+            continue;
+        }
+        function_times_.push_back(std::make_unique<FunctionTimes>(name, *spec.robot, image_));
+        for (std::uint32_t robot = range.first; robot < range.last; ++robot) {
+            controllers_[robot].times = function_times_.back().get();
+        }
+    }
 }
 
 Controller& Controllers::controller(std::uint32_t robot) {
@@ -486,13 +503,7 @@ void Controllers::begin_step() {
 }
 
 void Controllers::take_over(Outbox& outbox) {
-    TransmissionQueue& air = world_.air;
-    std::size_t const offset = air.payloads.size();
-    for (Transmission& transmission : outbox.air.transmissions) {
-        transmission.payload_offset += offset;
-    }
-    air.transmissions.insert(air.transmissions.end(), outbox.air.transmissions.begin(), outbox.air.transmissions.end());
-    air.payloads.insert(air.payloads.end(), outbox.air.payloads.begin(), outbox.air.payloads.end());
+    world_.air.append(outbox.air);
     for (Outbox::Said const& said : outbox.said) {
         if (said.kind.text.empty()) {
             services_.print_line(world_, said.robot, said.text);
@@ -593,6 +604,9 @@ void Controllers::tell_at_end(std::uint64_t arrivals) const {
     warn_of_send_results(controllers_);
     tell_of_lost_flash_writes(world_);
     tell_of_ended_programs(controllers_);
+    for (std::unique_ptr<FunctionTimes> const& times : function_times_) {
+        times->tell_at_end();
+    }
 }
 
 void Controllers::tell_of_unset_columns(std::optional<std::vector<std::string>> const& fields) const {

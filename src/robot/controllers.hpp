@@ -16,6 +16,7 @@
 #include "process/guarded_memory.hpp"
 #include "process/program_image.hpp"
 #include "robot/context.hpp"
+#include "robot/function_times.hpp"
 #include "robot/robot_memory.hpp"
 #include "robot/shared_state.hpp"
 #include "world/world.hpp"
@@ -161,6 +162,7 @@ public:
 private:
     void allocate_user_data();
     void draw_seeds(std::uint64_t seed);
+    void count_time();
     void enter(std::uint32_t robot, Phase phase);
     void enter_as_system(std::uint32_t robot, Phase phase);
     [[gnu::noinline]] static void leave();  // see can_change_threads()
@@ -207,9 +209,10 @@ private:
     std::optional<Callbacks> begun_with_;  // of a program for the SDK: those that its main() has set before it waited
     World& world_;
     RunServices& services_;
-    std::vector<Controller> controllers_;  // one for each robot of the world
-    std::vector<RobotRange> ranges_;       // of those that the program drives, ascending
-    Controller system_;                    // of the global step
+    std::vector<Controller> controllers_;                         // one for each robot of the world
+    std::vector<RobotRange> ranges_;                              // of those that the program drives, ascending
+    Controller system_;                                           // of the global step
+    std::vector<std::unique_ptr<FunctionTimes>> function_times_;  // of the categories whose code takes time
     GuardedMemory user_data_;
     FiberPool fibers_;          // on which programs run
     std::int64_t step_us_ = 0;  // time of the step

@@ -97,6 +97,9 @@ void add_robot(Hash& hash, Controller const& controller, World const& world, std
     hash.add(devices.messages_received[robot]);
     hash.add(controller.random);
     hash.add(controller.seeds.later);
+    if (controller.times != nullptr) {
+        hash.add(controller.rest_us);
+    }
     hash.add(mailboxes.size(robot));
     for (std::span<std::byte const> const messages : mailboxes.waiting(robot)) {
         hash.add_bytes(messages);

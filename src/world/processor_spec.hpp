@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "riscv/cycle_costs.hpp"
 
@@ -41,6 +42,15 @@ struct ProcessorSpec {
     }
 
     friend bool operator==(ProcessorSpec const&, ProcessorSpec const&) = default;
+};
+
+/// What a call of a function takes on the robot's processor, on average, with all that it calls.
+struct FunctionCost {
+    std::string function;
+    double cycles = 0.0;      // of its code, before ProcessorSpec::cycle_factor
+    double library_us = 0.0;  // in functions of the robot's library
+
+    friend bool operator==(FunctionCost const&, FunctionCost const&) = default;
 };
 
 /// Whether the code of a robot takes time of the robot's clock.

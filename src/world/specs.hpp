@@ -167,9 +167,10 @@ struct RobotSpec {
     bool rotate_leds_45_deg = true;         // drawing only
     bool magnetometer_enabled = true;       // else programs find none
     SensorSpec sensors;
-    std::optional<BatterySpec> battery{};  // absent: always full
-    BrainSpec brain{};                     // what drives it
-    CpuTime cpu_time = CpuTime::off;       // whether its code takes time
+    std::optional<BatterySpec> battery{};        // absent: always full
+    BrainSpec brain{};                           // what drives it
+    CpuTime cpu_time = CpuTime::off;             // whether its code takes time
+    std::vector<FunctionCost> function_costs{};  // how much, if it is a program in C
 };
 
 /// A soft body: bodies along the outline of the shape, joined into a ring by springs.

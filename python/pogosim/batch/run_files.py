@@ -13,7 +13,7 @@ OUTPUTS_ASKED_FOR = {"message_log": "messages.feather", "flash_state.output_file
 ALL_OUTPUTS = (*OUTPUTS, *OUTPUTS_ASKED_FOR)
 
 FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
-FILES_OF_OBJECTS = ("robot_model", "brain.script")  # of a category
+FILES_OF_OBJECTS = ("robot_model", "brain.script", "function_costs")  # of a category
 
 
 def is_nested(setting: str) -> bool:

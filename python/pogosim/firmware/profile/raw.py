@@ -134,6 +134,7 @@ class Profile:
 
     firmware: str
     clock_hz: float
+    cycle_factor: float
     loop_hz: float
     memory_bytes: int
     program_bytes: int
@@ -241,8 +242,8 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST_FOUND else f"{text[:LONGEST_FOUND]}..."
 
 
-def read_json(file: Path) -> Entry:
-    """Read the object of a JSON file.
+def read_json(file: Path, called: str) -> Entry:
+    """Read the object of a JSON file, which has a name in messages.
 
     Raises:
         ProfileError: It is something else.
@@ -252,33 +253,38 @@ def read_json(file: Path) -> Entry:
     try:
         values = json.loads(file.read_bytes())
     except UnicodeDecodeError:
-        raise ProfileError(f"{file} is not text in UTF-8; {wanted}") from None
+        raise ProfileError(f"{called} is not text in UTF-8; {wanted}") from None
     except json.JSONDecodeError as error:
-        raise ProfileError(f"{file}:{error.lineno}: it is not JSON ({error.msg}); {wanted}") from None
+        raise ProfileError(f"{called}:{error.lineno}: it is not JSON ({error.msg}); {wanted}") from None
     except (RecursionError, ValueError):
-        raise ProfileError(f"{file} is not JSON that can be read; {wanted}") from None
+        raise ProfileError(f"{called} is not JSON that can be read; {wanted}") from None
     if not isinstance(values, dict) or "version" not in values or "stacks" not in values:
-        raise ProfileError(f"{file} is JSON, but no profile: it has no 'version' and 'stacks'; {wanted}")
+        raise ProfileError(f"{called} is JSON, but no profile: it has no 'version' and 'stacks'; {wanted}")
     if values["version"] != VERSION:
         raise ProfileError(
-            f"{file}: its version is {shown(values['version'])}, expected {VERSION}; make the profile again"
+            f"{called}: its version is {shown(values['version'])}, expected {VERSION}; make the profile again"
         )
-    return Entry(str(file), values)
+    return Entry(called, values)
 
 
-def read_profile(file: Path) -> Profile:
+def read_profile(file: Path, called: str = "") -> Profile:
     """Read the profile of a run.
+
+    Args:
+        file: The profile.
+        called: What messages call it; empty: its path.
 
     Raises:
         ProfileError: It is something else, or has no ticks.
         OSError: It cannot be read.
     """
-    entry = read_json(file)
+    entry = read_json(file, called or str(file))
     factor = entry.positive("cycle_factor")
     names = entry.texts("functions")
     profile = Profile(
         firmware=entry.text("firmware"),
         clock_hz=entry.positive("clock_hz"),
+        cycle_factor=factor,
         loop_hz=entry.number("loop_hz"),
         memory_bytes=entry.whole("memory_bytes"),
         program_bytes=entry.whole("program_bytes"),
@@ -294,8 +300,8 @@ def read_profile(file: Path) -> Profile:
     )
     if not profile.ticks:
         raise ProfileError(
-            f"{file}: no tick ended, so there is nothing to report: the run was shorter than a tick, or the program "
-            "does not come back to its main loop (pogobot_start)"
+            f"{entry.place}: no tick ended, so there is nothing to report: the run was shorter than a tick, or the "
+            "program does not come back to its main loop (pogobot_start)"
         )
     return profile
 

@@ -1,0 +1,28 @@
+// Values that a configuration may also keep in a file of their own: `script: [...]`, or `script: dance.yaml`.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "config/reading.hpp"
+#include "config/values.hpp"
+
+namespace pogosim {
+
+/// A list or a map, and its key path where it was written.
+struct WrittenValue {
+    Node node;
+    std::string path;
+};
+
+struct FileOfValue {
+    std::string_view key;       // also in the file, which has no other
+    std::string_view expected;  // "the name of a file with a list `script`, or that list"
+    std::string_view content;   // what is said of a file with something else
+    char const* name;           // "the script"
+};
+
+/// The value under a key, from the file that it names, which is noted in `reading`. Throws ConfigError.
+WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading);
+
+}  // namespace pogosim
