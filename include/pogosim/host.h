@@ -100,10 +100,11 @@ int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_a
 /// of its payload in bytes, and offset of that in "received_bytes" (k) |u1.
 int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* name, struct pogosim_array* array);
 
-/// Copies `size` bytes at an address in the memory of each robot of a category that runs firmware: `bytes` has room for
-/// as many times `size` as the category has robots. It fails for any other category, and where there is no memory.
-int pogosim_run_firmware_bytes(pogosim_run const* run, char const* category, uint32_t address, uint32_t size,
-                               void* bytes);
+/// Copies `size` bytes at an address in the memory of each robot that runs a firmware, by the name of its file. `bytes`
+/// has room for as many times `size` as the run has robots, and `runs_it` for as many bytes: 1 for those that run it, 0
+/// for all others, whose bytes stay as they are. It fails where these have no memory.
+int pogosim_run_firmware_bytes(pogosim_run const* run, char const* firmware, uint32_t address, uint32_t size,
+                               void* bytes, uint8_t* runs_it);
 
 /// Forgets the received messages of such a category: "received" is empty, and "received_count" 0. Without it, messages
 /// wait in the robots' mailboxes once there are as many as these hold, and are lost when these are full.

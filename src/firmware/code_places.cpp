@@ -53,11 +53,13 @@ void CodePlaces::read_symbols(FirmwareProgram const& program) {
     std::uint32_t chain = chain_number({function_number("?")});
     std::vector<FirmwareSymbol> const& symbols = program.firmware.symbols;
     std::size_t next = 0;
+    is_entry_.resize(chain_of_.size());
     for (std::size_t word = 0; word < chain_of_.size(); ++word) {
         std::uint32_t const address = address_ + static_cast<std::uint32_t>(4 * word);
         for (; next < symbols.size() && symbols[next].address <= address; ++next) {
             if (symbols[next].is_function && symbols[next].address == address) {
                 chain = chain_number({function_number(symbols[next].name)});
+                is_entry_[word] = true;
             }
         }
         chain_of_[word] = chain;

@@ -30,6 +30,9 @@ public:
     /// Whether there is an instruction at an address.
     bool is_code(std::uint32_t address) const { return (address - address_) / 4 < chain_of_.size(); }
 
+    /// Whether a function begins at an address with code.
+    bool is_entry(std::uint32_t address) const { return is_code(address) && is_entry_[word_of(address)]; }
+
     std::uint32_t word_of(std::uint32_t address) const { return (address - address_) / 4; }
 
     // The numbers of an instruction's chain and line.
@@ -52,6 +55,7 @@ private:
     std::uint32_t address_;
     std::vector<std::uint32_t> chain_of_;  // of each word
     std::vector<std::uint32_t> line_of_;
+    std::vector<bool> is_entry_;
     std::vector<std::string> functions_;
     std::vector<Chain> chains_;
     std::vector<Line> lines_;

@@ -41,6 +41,13 @@ struct Failed : std::exception {
     char const* what() const noexcept override { return failure.what.c_str(); }
 };
 
+/// Whether a function of the library is at an address.
+bool is_call_of_library(Code const& code, std::uint32_t address) {
+    std::size_t const index = (address - code.address) / 4;
+    return address >= code.address && index < code.steps.size() &&
+           code.steps[index].operation == Operation::intercepted && intercepted_number(code, address) >= 0;
+}
+
 bool same_slip(Slip const& a, Slip const& b) {
     return a.function == b.function && a.argument == b.argument && a.outcome == b.outcome;
 }
@@ -85,20 +92,26 @@ bool FirmwareBrain::run_step() {
 /// A robot whose tick does not end looks as if it had little to do.
 void FirmwareBrain::warn_of_endless_ticks() const {
     constexpr std::int64_t long_us = 1'000'000;
+    constexpr std::int64_t longest_sleep_us = 10'000'000;
+    constexpr std::int64_t soon_us = 20'000;
     constexpr double s_per_us = 1e-6;
     std::uint32_t count = 0;
     std::string first;
     for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
         FirmwareRobot const& self = this->robot(robot);
         std::int64_t const since_us = time_us(world_) - self.went_on_us;
-        if (self.was_cut_off && program_->loop_timer && since_us > long_us && count++ == 0) {
-            first = fmt::format("robot #{} of category '{}' has been in tick {} for {:.1f} s, in {}",
-                                world_.robots.id[robot], world_.categories[category_].name, world_.devices.ticks[robot],
-                                s_per_us * static_cast<double>(since_us), place_in_firmware(*program_, self.core.pc));
+        bool const is_in_tick = program_->loop_timer && !self.is_ending_tick && !self.has_ended;
+        bool const sleeps = world_.devices.clock_us[robot] - time_us(world_) > soon_us;
+        if (is_in_tick && since_us > (sleeps ? longest_sleep_us : long_us) && count++ == 0) {
+            first = fmt::format("robot #{} of category '{}' has been in {} for {:.1f} s, in {}, and {} has not ended",
+                                world_.robots.id[robot], world_.categories[category_].name,
+                                self.is_starting ? "user_init" : fmt::format("tick {}", world_.devices.ticks[robot]),
+                                s_per_us * static_cast<double>(since_us), place_of(self),
+                                self.is_starting ? "that" : "the tick");
         }
     }
     if (count > 0) {
-        log().warn("{}, and the tick has not ended{}", first, count > 1 ? fmt::format(" ({} such robots)", count) : "");
+        log().warn("{}{}", first, count > 1 ? fmt::format(" ({} such robots)", count) : "");
     }
 }
 
@@ -138,7 +151,7 @@ void FirmwareBrain::declare_columns(std::vector<ColumnSpec>& columns) {
 }
 
 void FirmwareBrain::fill_row(std::uint32_t robot, std::span<CellValue> cells) const {
-    if (robot < range_.first || robot >= range_.last) {
+    if (!range_.contains(robot)) {
         return;
     }
     for (Column const& column : columns_) {
@@ -159,11 +172,16 @@ std::string FirmwareBrain::load_text(FirmwareRobot const& self) const {
 /// main_loop_hz of a robot; the usual value if the compiler has left that out because it never changes.
 int FirmwareBrain::loop_hz_of(FirmwareRobot const& self) const {
     constexpr int usual_hz = 60;
-    return program_->loop_hz ? static_cast<int>(variable<1>(self.memory, *program_->loop_hz)) : usual_hz;
+    return written_loop_hz(self).value_or(usual_hz);
+}
+
+/// The same; nothing if the compiler has left it out.
+std::optional<int> FirmwareBrain::written_loop_hz(FirmwareRobot const& self) const {
+    return program_->loop_hz ? std::optional<int>(variable<1>(self.memory, *program_->loop_hz)) : std::nullopt;
 }
 
 NamedTexts FirmwareBrain::texts_of(std::uint32_t robot) const {
-    if (robot < range_.first || robot >= range_.last) {
+    if (!range_.contains(robot)) {
         return {};
     }
     FirmwareRobot const& self = this->robot(robot);
@@ -175,9 +193,7 @@ NamedTexts FirmwareBrain::texts_of(std::uint32_t robot) const {
 int FirmwareBrain::highest_loop_hz() const {
     int highest = 0;
     for (FirmwareRobot const& self : robots_) {
-        if (program_->loop_hz) {
-            highest = std::max(highest, static_cast<int>(variable<1>(self.memory, *program_->loop_hz)));
-        }
+        highest = std::max(highest, written_loop_hz(self).value_or(0));
     }
     return highest;
 }
@@ -279,7 +295,7 @@ std::uint64_t FirmwareBrain::budget(FirmwareCall const& call, std::uint64_t used
     constexpr std::uint64_t most = 20'000'000;  // after which the user may want the run to end
     FirmwareRobot const& self = call.self;
     double const cycle_us = spec_.model.processor.us_of(1.0);
-    if (spec_.cpu_time == CpuTime::counted && !self.runs_ahead()) {
+    if (is_counted() && !self.runs_ahead()) {
         double const left_us = static_cast<double>(step_us_ + 1 - call.clock_us()) - self.rest_us;
         return static_cast<std::uint64_t>(std::clamp(std::ceil(left_us / cycle_us), 1.0, static_cast<double>(most)));
     }
@@ -297,11 +313,12 @@ std::uint64_t FirmwareBrain::cycle_limit() const {
 
 /// A robot has used its budget. Throws Failed if that was its last one.
 void FirmwareBrain::check_time(FirmwareCall const& call, std::uint64_t used) const {
-    bool const is_timed = spec_.cpu_time == CpuTime::counted && !call.self.runs_ahead();
+    bool const is_timed = is_counted() && !call.self.runs_ahead();
     std::uint64_t const limit = cycle_limit();
     if (!is_timed && limit > 0 && used >= limit) {
-        throw Failed(failure_of(
-            call, fmt::format("it has run for {} s on the robot's processor without waiting", services_.timeout_s)));
+        throw Failed(
+            failure_of(call, fmt::format("it has run for {} s on the robot's processor {}", services_.timeout_s,
+                                         call.self.is_starting ? "before its main loop" : "without waiting")));
     }
     if (services_.is_interrupted()) {
         UserFailure failure = failure_of(call, "it was running");
@@ -313,12 +330,9 @@ void FirmwareBrain::check_time(FirmwareCall const& call, std::uint64_t used) con
 /// The clock of a robot whose code takes time goes on by that of its cycles, and of what its last call has taken.
 void FirmwareBrain::count_time(FirmwareCall& call) const {
     FirmwareRobot& self = call.self;
-    if (spec_.cpu_time == CpuTime::counted) {
+    if (is_counted()) {
         auto const cycles = static_cast<double>(self.core.cycles - self.timed_cycles);
-        self.rest_us += spec_.model.processor.us_of(cycles) + call.time_us;
-        double const whole_us = std::floor(self.rest_us);
-        call.clock_us() += static_cast<std::int64_t>(whole_us);
-        self.rest_us -= whole_us;
+        take_time(world_, call.robot, spec_.model.processor.us_of(cycles) + call.time_us, self.rest_us);
     }
     self.timed_cycles = self.core.cycles;
     call.time_us = 0.0;
@@ -343,13 +357,12 @@ void FirmwareBrain::go_on(FirmwareCall& call) const {
     FirmwareRobot& self = call.self;
     Code const& code = program_->firmware.code;
     std::uint64_t const waited_cycles = self.core.cycles;
-    bool const is_timed = spec_.cpu_time == CpuTime::counted;
     for (bool goes_on = true; goes_on;) {
         Stop const stop = run_core(call, budget(call, self.core.cycles - waited_cycles));
         count_time(call);
         if (stop.reason == StopReason::budget_used) {
             check_time(call, self.core.cycles - waited_cycles);
-            goes_on = !is_timed || self.runs_ahead() || !is_ahead(call);
+            goes_on = !is_counted() || self.runs_ahead() || !is_ahead(call);
             self.was_cut_off = !goes_on;
         } else if (stop.reason == StopReason::intercepted) {
             std::int32_t const number = intercepted_number(code, stop.pc);
@@ -367,16 +380,15 @@ void FirmwareBrain::go_on(FirmwareCall& call) const {
 /// A tick of the main loop begins. False: it does so in another step.
 bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     FirmwareRobot& self = call.self;
-    bool const is_timed = spec_.cpu_time == CpuTime::counted;
     if (self.is_starting) {
         // pogobot_start() resets it, too, before user_init.
         self.is_starting = ++self.timer_resets < 2;
         return self.is_starting;
     }
-    if (!is_timed && self.tick_step == world_.step) {
+    if (!is_counted() && self.tick_step == world_.step) {
         return false;  // its last one took no time
     }
-    if (!is_timed && program_->loop_hz && variable<1>(self.memory, *program_->loop_hz) == 0) {
+    if (!is_counted() && written_loop_hz(self) == 0) {
         call.clock_us() = step_us_;  // without a sleep the clock follows the steps
     }
     self.tick_cycles = self.core.cycles - self.tick_began_cycles;
@@ -391,15 +403,16 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     return true;
 }
 
-/// Notes a call that may be in a loop that waits, where code takes no time. False: the robot waits before it.
+/// Notes a call that may be in a loop that waits: where code takes no time, and before the main loop, when the robot
+/// runs ahead of the world. False: the robot waits before it.
 bool FirmwareBrain::note_call(FirmwareCall& call, LibraryFunction const& function) const {
     FirmwareRobot& self = call.self;
+    bool const may_wait = !is_counted() || self.is_starting;
     bool const is_noted = function.noted != Noted::at_line_end || call.argument(0) == '\n';
-    if (spec_.cpu_time == CpuTime::counted || !is_noted || std::exchange(self.has_noted_call, false) ||
-        ++self.calls <= kFreeCalls) {
+    if (!may_wait || !is_noted || std::exchange(self.has_noted_call, false) || ++self.calls <= kFreeCalls) {
         return true;
     }
-    call.clock_us() += kCallUs;
+    call.clock_us() += is_counted() ? 0 : kCallUs;
     self.has_noted_call = is_ahead(call) && !(self.is_starting && function.noted == Noted::as_clock);
     return !self.has_noted_call;
 }
@@ -451,18 +464,12 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
         return self.runs_ahead() || !is_ahead(call);
     }
     self.has_ended = outcome == CallOutcome::ends;
-    bool const is_timed = spec_.cpu_time == CpuTime::counted && !self.runs_ahead();
+    bool const is_timed = is_counted() && !self.runs_ahead();
     return !self.has_ended && !(is_timed && is_ahead(call));
 }
 
 void FirmwareBrain::join(Part& part) {
-    TransmissionQueue& air = world_.air;
-    std::size_t const offset = air.payloads.size();
-    for (Transmission transmission : part.out.air.transmissions) {
-        transmission.payload_offset += offset;
-        air.transmissions.push_back(transmission);
-    }
-    air.payloads.insert(air.payloads.end(), part.out.air.payloads.begin(), part.out.air.payloads.end());
+    world_.air.append(part.out.air);
     for (FirmwareOutbox::Said const& said : part.out.said) {
         if (said.slip.outcome.empty()) {
             services_.print(said.robot, said.text);
@@ -475,14 +482,17 @@ void FirmwareBrain::join(Part& part) {
     }
 }
 
-/// A call of the library is where its caller is.
+/// Where a robot is: a call of the library is where its caller is.
+std::string FirmwareBrain::place_of(FirmwareRobot const& self) const {
+    bool const is_in_call = is_call_of_library(program_->firmware.code, self.core.pc);
+    return place_in_firmware(*program_, is_in_call ? self.core.x[kReturnAddress] - 4 : self.core.pc);
+}
+
 UserFailure FirmwareBrain::failure_of(FirmwareCall const& call, std::string what) const {
-    FirmwareRobot const& self = call.self;
-    std::uint32_t const place = call.function.empty() ? self.core.pc : self.core.x[kReturnAddress] - 4;
     return {
         .what = std::move(what),
-        .where = fmt::format("{} of robot #{} of category '{}'{}", place_in_firmware(*program_, place),
-                             world_.robots.id[call.robot], world_.categories[world_.robots.category[call.robot]].name,
+        .where = fmt::format("{} of robot #{} of category '{}'{}", place_of(call.self), world_.robots.id[call.robot],
+                             world_.categories[world_.robots.category[call.robot]].name,
                              program_->ticks ? fmt::format(", tick {}", call.ticks()) : "")};
 }
 

@@ -86,6 +86,9 @@ private:
     FirmwareVariables const& variables() const;
     std::string load_text(FirmwareRobot const& self) const;
     int loop_hz_of(FirmwareRobot const& self) const;
+    std::optional<int> written_loop_hz(FirmwareRobot const& self) const;
+    bool is_counted() const { return spec_.cpu_time == CpuTime::counted; }
+    std::string place_of(FirmwareRobot const& self) const;
     UserFailure failure_of(FirmwareCall const& call, std::string what) const;
 
     World& world_;

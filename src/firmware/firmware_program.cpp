@@ -44,12 +44,21 @@ std::optional<std::uint32_t> variable_at(Firmware const& firmware, std::string_v
                                                                             : std::nullopt;
 }
 
+/// Whether code is that with which a program begins and ends: the program's own does not wait for the end of time.
+bool is_start_code(Firmware const& firmware, std::uint32_t address) {
+    FirmwareSymbol const* const function = firmware.function_at(address);
+    return function == nullptr || function->name.starts_with('_') || function->name == "exit" ||
+           function->name == "abort";
+}
+
 /// A jump to itself, where programs end.
-void intercept_endless_loops(Code& code) {
+void intercept_endless_loops(Firmware& firmware) {
+    Code& code = firmware.code;
     for (std::size_t i = 0; i < code.steps.size(); ++i) {
         Step const& step = code.steps[i];
-        if (step.operation == Operation::jal && step.immediate == 0) {
-            intercept(code, code.address + static_cast<std::uint32_t>(4 * i), kEndlessLoop);
+        std::uint32_t const address = code.address + static_cast<std::uint32_t>(4 * i);
+        if (step.operation == Operation::jal && step.immediate == 0 && is_start_code(firmware, address)) {
+            intercept(code, address, kEndlessLoop);
         }
     }
 }
@@ -59,14 +68,25 @@ bool is_name_of_library(std::string_view name) {
     return name.starts_with("pogobot_") || name.starts_with("magn_") || name.ends_with("_flash") || name == "msleep";
 }
 
+/// The function of the library by a name; null: there is none. A program may have others by this name, static in a
+/// file. When the library is optimised together with the program, its functions are static, too.
+FirmwareSymbol const* function_of_library(Firmware const& firmware, std::string_view name) {
+    FirmwareSymbol const* found = nullptr;
+    for (FirmwareSymbol const& symbol : firmware.symbols) {
+        bool const is_better = found == nullptr || (symbol.is_global && !found->is_global);
+        if (symbol.name == name && symbol.is_function && (symbol.is_global || is_name_of_library(name)) && is_better) {
+            found = &symbol;
+        }
+    }
+    return found;
+}
+
 void intercept_library(Firmware& firmware, FirmwareRandom random) {
     std::span const functions = library_functions();
     for (std::size_t i = 0; i < functions.size(); ++i) {
-        FirmwareSymbol const* const symbol = firmware.find(functions[i].name);
         bool const is_wanted = !functions[i].is_random || random == FirmwareRandom::simulator;
-        // When the library is optimised together with the program, its functions are those of one file, too.
-        bool const is_of_library = symbol != nullptr && (symbol->is_global || is_name_of_library(symbol->name));
-        if (is_of_library && is_wanted) {
+        FirmwareSymbol const* const symbol = function_of_library(firmware, functions[i].name);
+        if (symbol != nullptr && is_wanted) {
             intercept(firmware.code, symbol->address, static_cast<std::int32_t>(i));
         }
     }
@@ -103,7 +123,7 @@ std::shared_ptr<FirmwareProgram const> load_firmware(FirmwareSpec const& spec, P
     if (firmware.find("main") == nullptr) {
         throw ConfigError(fmt::format("{}: has no function main(): expected the firmware of a robot", name));
     }
-    intercept_endless_loops(firmware.code);
+    intercept_endless_loops(firmware);
     intercept_library(firmware, spec.random);
     program->loop_timer = variable_at(firmware, "timer_main_loop", 4);
     program->ticks = variable_at(firmware, "pogobot_ticks", 4);

@@ -45,6 +45,13 @@ bool is_number(VariableType const& type) {
     }
 }
 
+/// Whether a number may be below 0. A char may not, on robots.
+bool has_sign(VariableType const& type) {
+    bool const is_signed_enumeration =
+        type.kind == Kind::enumeration && (type.element == nullptr || type.element->kind == Kind::signed_number);
+    return type.kind == Kind::signed_number || is_signed_enumeration;
+}
+
 /// The first part of a path, and the rest behind a dot or a bracket.
 struct Split {
     std::string_view first;
@@ -63,13 +70,17 @@ std::optional<std::size_t> index_in(std::string_view part) {
     return is_closed && std::from_chars(part.data() + 1, end, index).ptr == end ? std::optional(index) : std::nullopt;
 }
 
-/// What is at `path`, such as ".pose[1].x", in a variable.
-std::optional<FirmwareVariable> part_of(FirmwareVariable variable, std::string_view path) {
+/// What is at `path`, such as ".pose[1].x", in a variable. `why`: why there is nothing, if that can be said.
+std::optional<FirmwareVariable> part_of(FirmwareVariable variable, std::string_view path, std::string& why) {
     while (!path.empty()) {
         auto const [part, rest] = split(path);
         if (part.front() == '[') {
             auto const index = index_in(part);
-            if (variable.type->kind != Kind::array || !index || *index >= variable.type->count) {
+            if (variable.type->kind == Kind::array && index && *index >= variable.type->count) {
+                why = fmt::format("{} is beyond its end: it has {} elements", part, variable.type->count);
+                return std::nullopt;
+            }
+            if (variable.type->kind != Kind::array || !index) {
                 return std::nullopt;
             }
             VariableTypePointer const element = variable.type->element;
@@ -77,7 +88,12 @@ std::optional<FirmwareVariable> part_of(FirmwareVariable variable, std::string_v
         } else {
             auto const& members = variable.type->members;
             auto const member = std::ranges::find(members, part.substr(1), &VariableType::Member::name);
-            if (member == members.end() || member->bits > 0) {
+            if (member == members.end()) {
+                return std::nullopt;
+            }
+            if (member->bits > 0) {
+                why = fmt::format("{} is a bit field, which cannot be a column; keep a copy in a variable of its own",
+                                  escaped(member->name));
                 return std::nullopt;
             }
             variable = {variable.address + static_cast<std::uint32_t>(member->offset), member->type};
@@ -131,11 +147,12 @@ FirmwareVariable FirmwareVariables::find(std::string const& name) const {
         fail(fmt::format("column '{}': {}", escaped(name), variables_.why_unknown));
     }
     auto const [first, rest] = split(name);
+    std::string why;
     for (ProgramVariables::Variable const& variable : variables_.own) {
         if (name_of_variable(variable) != first && variable.name != first) {
             continue;
         }
-        auto const part = part_of({static_cast<std::uint32_t>(variable.address), variable.type}, rest);
+        auto const part = part_of({static_cast<std::uint32_t>(variable.address), variable.type}, rest, why);
         if (part && (is_number(*part->type) || is_text(*part->type))) {
             return *part;
         }
@@ -143,8 +160,15 @@ FirmwareVariable FirmwareVariables::find(std::string const& name) const {
             fail(fmt::format("column '{}': is neither a number nor a text; name one of its parts", escaped(name)));
         }
     }
+    if (!why.empty()) {
+        fail(fmt::format("column '{}': {}", escaped(name), why));
+    }
     std::vector<std::string> names;
     for (ProgramVariables::Variable const& variable : variables_.own) {
+        if (variable.name.ends_with(fmt::format(": {}", first))) {
+            fail(fmt::format("column '{}': several variables have this name, such as '{}'; rename one", escaped(name),
+                             escaped(variable.name)));
+        }
         add_names(name_of_variable(variable), *variable.type, names);
     }
     fail(fmt::format("column '{}': the program has no such variable{}; the compiler leaves out what does not change",
@@ -172,8 +196,7 @@ ColumnType column_type_of(VariableType const& type) {
     if (type.kind == Kind::floating) {
         return type.bytes == sizeof(float) ? ColumnType::float32 : ColumnType::float64;
     }
-    bool const has_sign = type.kind == Kind::signed_number || type.kind == Kind::enumeration;  // char has none here
-    std::size_t const bytes = has_sign ? type.bytes : 2 * type.bytes;
+    std::size_t const bytes = has_sign(type) ? type.bytes : 2 * type.bytes;
     return bytes <= 1   ? ColumnType::int8
            : bytes <= 2 ? ColumnType::int16
            : bytes <= 4 ? ColumnType::int32
@@ -186,21 +209,15 @@ CellValue value_of(FirmwareVariable const& variable, Memory const& memory) {
         return text_at(variable, memory);
     }
     std::uint64_t const bits = bits_at(variable, memory);
-    switch (type.kind) {
-        case Kind::boolean:
-            return bits != 0;
-        case Kind::floating:
-            return type.bytes == sizeof(float)
-                       ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
-                       : std::bit_cast<double>(bits);
-        case Kind::signed_number:
-        case Kind::enumeration: {
-            unsigned const unused = 64 - 8 * static_cast<unsigned>(type.bytes);
-            return static_cast<std::int64_t>(bits << unused) >> unused;
-        }
-        default:
-            return static_cast<std::int64_t>(bits);
+    if (type.kind == Kind::boolean) {
+        return bits != 0;
     }
+    if (type.kind == Kind::floating) {
+        return type.bytes == sizeof(float) ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+                                           : std::bit_cast<double>(bits);
+    }
+    unsigned const unused = has_sign(type) ? 64 - 8 * static_cast<unsigned>(type.bytes) : 0;
+    return static_cast<std::int64_t>(bits << unused) >> unused;
 }
 
 }  // namespace pogosim

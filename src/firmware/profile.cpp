@@ -58,10 +58,13 @@ std::string json_list(List const& list, Text const& text_of) {
 }  // namespace
 
 Profile::Profile(std::string file, std::uint32_t robots) : file_(std::move(file)), most_robots_(robots) {
+    std::error_code ignored;
+    if (std::filesystem::is_fifo(file_, ignored)) {
+        throw OutputError(fmt::format("cannot write the profile {}: it is a pipe; give a file", escaped(file_)));
+    }
     if (!std::ofstream(file_, std::ios::binary | std::ios::app)) {  // before a run that would be in vain
         throw OutputError(fmt::format("cannot write the profile {}", escaped(file_)));
     }
-    std::error_code ignored;
     if (std::filesystem::is_regular_file(file_, ignored) && std::filesystem::file_size(file_, ignored) == 0) {
         std::filesystem::remove(file_, ignored);
     }
@@ -219,6 +222,7 @@ void Profile::note_jump(Robot& self, Step const& step, std::uint32_t from, std::
     bool const is_return = step.operation == Operation::jalr && step.rd == kUnread &&
                            (step.rs1 == kReturnAddress || step.rs1 == kMillicode);
     if (!is_return) {
+        note_tail_call(self, step, from, to);
         return;
     }
     auto const returned = std::find_if(self.frames.rbegin(), self.frames.rend(),
@@ -228,6 +232,26 @@ void Profile::note_jump(Robot& self, Step const& step, std::uint32_t from, std::
             end_span(self.frames.back(), now_us);
             self.frames.pop_back();
         }
+    }
+}
+
+/// A jump to another function is a call that does not come back: that one returns to this one's caller. In a path, a
+/// function stands once among those that have called each other so.
+void Profile::note_tail_call(Robot& self, Step const& step, std::uint32_t from, std::uint32_t to) {
+    bool const jumps = (step.operation == Operation::jal || step.operation == Operation::jalr) && step.rd == kUnread;
+    if (!jumps || self.frames.empty() || !places_->is_entry(to) ||
+        places_->function_of(to) == places_->function_of(from)) {
+        return;
+    }
+    std::uint32_t& base = self.frames.back().caller_path;
+    std::uint32_t const from_path = path_at(self, from);
+    std::uint32_t caller = from_path;
+    for (std::uint32_t path = from_path; path != base && path != 0; path = paths_[path].parent) {
+        caller = paths_[path].function == places_->function_of(to) ? paths_[path].parent : caller;
+    }
+    base = caller;
+    if (self.ticks_begun > 0) {
+        ++cost_of(path_at(self, to), self.path_costs, self.used_paths).calls;
     }
 }
 

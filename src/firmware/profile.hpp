@@ -111,6 +111,7 @@ private:
     static Cost& cost_of(std::uint32_t number, std::vector<Cost>& costs, std::vector<std::uint32_t>& used);
     void end_tick(Robot& self);
     void note_jump(Robot& self, Step const& step, std::uint32_t from, std::uint32_t to, double now_us);
+    void note_tail_call(Robot& self, Step const& step, std::uint32_t from, std::uint32_t to);
     void note_memory(Robot& self, Step const& step, Core const& core) const;
     void end_span(Frame const& frame, double now_us);
 

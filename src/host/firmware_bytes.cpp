@@ -1,13 +1,15 @@
 // The memory of robots that run firmware, for other processes' languages.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
-#include <string_view>
+#include <string>
+#include <system_error>
 
 #include "base/error.hpp"
-#include "config/values.hpp"
 #include "firmware/firmware_brain.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
@@ -16,33 +18,32 @@ using namespace pogosim;
 
 namespace {
 
-/// Copies bytes of the memory of each robot that a brain drives, one after the other; returns what is left of `into`.
-std::byte* copy_memory(FirmwareBrain const& brain, std::uint32_t address, std::uint32_t size, std::byte* into) {
-    for (std::uint32_t robot = brain.robots().first; robot < brain.robots().last; ++robot) {
-        if (brain.robot(robot).memory.read(address, {into, size}).fault != AccessFault::none) {
-            throw ConfigError(fmt::format("robots have no {} bytes of memory at 0x{:08x}", size, address));
-        }
-        into += size;
-    }
-    return into;
+/// Whether two names lead to one file.
+bool is_same_file(std::string const& one, std::string const& other) {
+    std::error_code error;
+    return one == other || std::filesystem::equivalent(one, other, error);
 }
 
 }  // namespace
 
-int pogosim_run_firmware_bytes(pogosim_run const* run, char const* category, uint32_t address, uint32_t size,
-                               void* bytes) {
+int pogosim_run_firmware_bytes(pogosim_run const* run, char const* firmware, uint32_t address, uint32_t size,
+                               void* bytes, uint8_t* runs_it) {
     return with_status_of(*run, [&] {
-        auto* const begin = static_cast<std::byte*>(bytes);
-        std::byte* into = begin;
-        World const& world = run->simulation().world();
-        for (auto const& brain : run->simulation().brains()) {
-            auto const* const firmware = dynamic_cast<FirmwareBrain const*>(brain.get());
-            if (firmware != nullptr && world.categories[firmware->category()].name == category) {
-                into = copy_memory(*firmware, address, size, into);
+        Simulation const& simulation = run->simulation();
+        std::span const into(static_cast<std::byte*>(bytes), simulation.world().robots.size() * std::size_t{size});
+        std::ranges::fill(std::span(runs_it, simulation.world().robots.size()), std::uint8_t{0});
+        for (auto const& brain : simulation.brains()) {
+            auto const* const driver = dynamic_cast<FirmwareBrain const*>(brain.get());
+            if (driver == nullptr || !is_same_file(driver->program()->file, firmware)) {
+                continue;
             }
-        }
-        if (into == begin) {
-            throw ConfigError(fmt::format("category '{}' does not run firmware", shown(category)));
+            for (std::uint32_t robot = driver->robots().first; robot < driver->robots().last; ++robot) {
+                std::span const row = into.subspan(std::size_t{robot} * size, size);
+                if (driver->robot(robot).memory.read(address, row).fault != AccessFault::none) {
+                    throw ConfigError(fmt::format("robots have no {} bytes of memory at 0x{:08x}", size, address));
+                }
+                runs_it[robot] = 1;
+            }
         }
         return POGOSIM_OK;
     });

@@ -168,6 +168,7 @@ VariableTypePointer read_type(Dwarf_Die& type, int depth) {
             break;
         case DW_TAG_enumeration_type:
             read.kind = Kind::enumeration;
+            read.element = dwarf_hasattr(&type, DW_AT_type) != 0 ? type_of(type, depth) : nullptr;
             for_each_child(&type, [&](Dwarf_Die& child) {
                 Dwarf_Attribute attribute;
                 Dwarf_Sword value = 0;

@@ -42,8 +42,8 @@ struct VariableType {
     std::size_t bytes = 0;
     std::vector<Member> members{};  // of a structure or union, in the order of the source
     std::vector<std::pair<std::int64_t, std::string>> constants{};  // of an enumeration
-    VariableTypePointer element{};                                  // of an array
-    std::size_t count = 0;                                          // of elements
+    VariableTypePointer element{};  // of an array; of an enumeration, the number that it is, null if that is not known
+    std::size_t count = 0;          // of elements
 };
 
 struct ProgramVariables {

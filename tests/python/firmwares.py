@@ -12,6 +12,40 @@ from running import ROOT, Run, Settings, build_folder, run
 
 OF_ROBOTS = "objects.robots.brain"
 
+PROGRAM = """#include "pogobase.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+typedef struct {{
+    uint32_t count;
+    int16_t level;
+    float share;
+    bool is_even;
+    char word[8];
+    struct {{ uint8_t id; double value; }} items[2];
+}} USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+{globals}
+void user_init(void) {{
+    {init}
+}}
+void user_step(void) {{
+    mydata->count++;
+    {step}
+}}
+int main(void) {{
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}}
+"""
+
+
+def text(step: str = "", init: str = "", globals_: str = "") -> str:
+    """Return a program with this code in its user_step and user_init, and before them."""
+    return PROGRAM.format(step=step, init=init, globals=globals_)
+
 
 def add_pogosim(folder: Path) -> Path:
     """Give a project Pogosim's tree, which need not be built, as a link."""

@@ -14,49 +14,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from firmwares import OF_ROBOTS, firmware_of, project_of, run_firmware, without_program
+from firmwares import OF_ROBOTS, firmware_of, project_of, run_firmware, text, without_program
 from pogosim import Simulation, SimulationError
+from pogosim.simulation import ConfigurationError
 from project import made, write
 from robot_sdk import TRIPLE, call, make_sdk, need
 from running import Run, by_robot, compile_text, ran, run, warnings, write_scene
 
-PROGRAM = """#include "pogobase.h"
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-typedef struct {{
-    uint32_t count;
-    int16_t level;
-    float share;
-    bool is_even;
-    char word[8];
-    struct {{ uint8_t id; double value; }} items[2];
-}} USERDATA;
-DECLARE_USERDATA(USERDATA)
-REGISTER_USERDATA(USERDATA)
-{globals}
-void user_init(void) {{
-    {init}
-}}
-void user_step(void) {{
-    mydata->count++;
-    {step}
-}}
-int main(void) {{
-    pogobot_init();
-    pogobot_start(user_init, user_step);
-    return 0;
-}}
-"""
 CLOCK_HZ = 21_000_000
 TICK_S = 0.016
 
 
 LED = {"data_logger_led": True}
-
-
-def text(step: str = "", init: str = "", globals_: str = "") -> str:
-    return PROGRAM.format(step=step, init=init, globals=globals_)
 
 
 @pytest.fixture(scope="module")
@@ -338,7 +307,7 @@ def test_variables_are_columns_by_name(tmp_path: Path) -> None:
     [
         ("mydata.cuont", "the program has no such variable; did you mean 'mydata.count'?"),
         ("mydata.items", "is neither a number nor a text; name one of its parts"),
-        ("mydata.items[2].id", "the program has no such variable"),
+        ("mydata.items[2].id", "[2] is beyond its end: it has 2 elements"),
         ("absent", "the program has no such variable"),
     ],
 )
@@ -643,10 +612,25 @@ def test_firmware_in_a_folder_of_its_own_is_found_beside_the_configuration(swarm
     assert done.code == 0, done.text
 
 
-def test_firmware_in_use_is_not_overwritten(swarm: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--set", "data_filename=robot.elf"],
+        ["--set", "console_filename=robot.elf", "--set", "enable_console_logging=true"],
+        ["--profile", "robot.elf"],
+        ["--profile", "link.elf"],
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize(
+    "way", [["--firmware", "robot.elf"], ["--set", "objects.robots.brain=robot.elf"]], ids=" ".join
+)
+def test_firmware_in_use_is_not_overwritten(way: list[str], arguments: list[str], swarm: Path, tmp_path: Path) -> None:
     shutil.copy(swarm, tmp_path / "robot.elf")
-    result = run_firmware(Path("robot.elf"), tmp_path, {"data_filename": "robot.elf"})
+    (tmp_path / "link.elf").symlink_to("robot.elf")
+    result = run(without_program(), tmp_path, {}, [*way, *arguments])
     assert result.code == 2
+    assert "overwrite" in result.errors
     assert (tmp_path / "robot.elf").read_bytes() == swarm.read_bytes()
 
 
@@ -654,7 +638,8 @@ def test_time_of_a_program_that_is_no_firmware_is_not_counted_in_silence(tmp_pat
     program = compile_text(tmp_path, text())
     (said,) = warnings(run(program, tmp_path, {"objects.robots.cpu_time": "counted"}))
     assert said.endswith(
-        "objects.robots.cpu_time: counted has an effect on firmware alone (brain: FILE.elf, or --firmware FILE); the "
+        "objects.robots.cpu_time: counted has an effect on firmware (brain: FILE.elf, or --firmware FILE), and "
+        "on programs in C with function_costs; the "
         "code of these robots takes no time"
     )
 
@@ -745,6 +730,13 @@ def test_what_is_no_file_is_no_firmware(tmp_path: Path) -> None:
         assert "expected an ELF file" in refusal(Path(name), tmp_path, {f"{OF_ROBOTS}": {"firmware": name}})
 
 
+def test_profile_is_not_written_to_a_pipe(swarm: Path, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    result = run_firmware(swarm, tmp_path, {}, ["--profile", "pipe"])
+    assert result.code == 2
+    assert "cannot write the profile pipe: it is a pipe; give a file" in result.errors
+
+
 def test_profile_takes_no_other_files_place(swarm: Path, tmp_path: Path) -> None:
     for name in ("scene.yaml", "data.feather"):
         result = run_firmware(swarm, tmp_path, {}, ["--profile", name])
@@ -770,3 +762,15 @@ def test_python_reads_variables_of_any_shape(tmp_path: Path) -> None:
         assert simulation.user_data["count"].shape == (3,)
         with pytest.raises(SimulationError, match="has no variable 'maen'; "):
             simulation.firmware_variable("maen")
+
+
+def test_wrong_arguments_of_a_variable_are_refused(swarm: Path, tmp_path: Path) -> None:
+    with Simulation(swarm, write_scene(tmp_path, {})) as simulation:
+        with pytest.raises(ConfigurationError, match=r"^category: expected text, found 5$"):
+            simulation.firmware_variable("mydata", 5)  # type: ignore[arg-type]
+        with pytest.raises(ConfigurationError, match=r"^name: expected text, found None$"):
+            simulation.firmware_variable(None)  # type: ignore[arg-type]
+        with pytest.raises(ConfigurationError, match=r"^firmware: expected the path of a file"):
+            simulation.firmware_variable("mydata", firmware=5)  # type: ignore[arg-type]
+        with pytest.raises(ConfigurationError, match=r"there is no category 'others'"):
+            simulation.firmware_variable("mydata", "others")

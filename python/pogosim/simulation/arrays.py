@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from ctypes import byref, c_double, c_void_p, string_at
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -108,12 +109,25 @@ class RunState:
             self._arrays[key] = found
         return self._arrays[key]
 
-    def firmware_bytes(self, category: str, count: int, address: int, size: int) -> npt.NDArray[np.uint8]:
-        """Return a copy of bytes in the memory of the `count` robots of a category. Shape (count, size)."""
-        found = np.zeros((count, size), dtype=np.uint8)
-        place = found.ctypes.data_as(c_void_p)
-        check(library().pogosim_run_firmware_bytes(self.pointer, category.encode(), address, size, place))
-        return found
+    def firmware_bytes(
+        self, file: Path, robots: int, address: int, size: int
+    ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.bool_]]:
+        """Return a copy of bytes in the memory of the robots that run a firmware, and which do.
+
+        Args:
+            file: Its ELF file.
+            robots: How many the run has (n).
+            address: Where these bytes begin.
+            size: How many bytes.
+
+        Returns:
+            Bytes (n, size), 0 for robots that do not run it; whether they do (n).
+        """
+        found = np.zeros((robots, size), dtype=np.uint8)
+        runs_it = np.zeros(robots, dtype=np.bool_)
+        places = (array.ctypes.data_as(c_void_p) for array in (found, runs_it))
+        check(library().pogosim_run_firmware_bytes(self.pointer, os.fsencode(file), address, size, *places))
+        return found, runs_it
 
     def kept_writable(self, name: str, make: Callable[[], npt.NDArray[Any]]) -> npt.NDArray[Any]:
         """Return the writable array that `make` gave at first. `retire` finds it by this."""

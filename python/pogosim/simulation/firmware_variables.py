@@ -69,7 +69,8 @@ def _read(file: Path) -> dict[str, Variable]:
             for entry in _variables_below(unit.get_top_DIE()):
                 address, declared = _address(entry), _declaration(entry)
                 name = (attribute(declared, "name") or b"").decode(errors="replace")
-                if address is not None and name and "DW_AT_type" in declared.attributes:
+                # The linker gives variables that it has left out the address 0, where the program begins.
+                if address and name and "DW_AT_type" in declared.attributes:
                     shown = USER_DATA if name == USER_DATA_OF_ROBOTS else name
                     variables.setdefault(shown, Variable(address, numpy_type(type_behind(declared))))
     return variables

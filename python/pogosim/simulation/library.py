@@ -118,7 +118,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_number": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
     "pogosim_run_array": (c_int, (c_void_p, c_char_p, POINTER(ArrayPlace))),
     "pogosim_run_brain_array": (c_int, (c_void_p, c_char_p, c_char_p, POINTER(ArrayPlace))),
-    "pogosim_run_firmware_bytes": (c_int, (c_void_p, c_char_p, c_uint32, c_uint32, c_void_p)),
+    "pogosim_run_firmware_bytes": (c_int, (c_void_p, c_char_p, c_uint32, c_uint32, c_void_p, c_void_p)),
     "pogosim_run_clear_received": (c_int, (c_void_p, c_char_p)),
     "pogosim_run_categories": (c_char_p, (c_void_p,)),
     "pogosim_run_messages": (c_char_p, (c_void_p,)),

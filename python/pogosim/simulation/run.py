@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
 import math
 import os
@@ -25,8 +24,8 @@ from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process, writable
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
-from pogosim.simulation.errors import ConfigurationError, SimulationError, given
-from pogosim.simulation.firmware_variables import USER_DATA, variables_of
+from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
+from pogosim.simulation.firmware_variables import USER_DATA, Variable, variables_of
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.user_data import user_data_type
@@ -475,20 +474,27 @@ class Simulation:
         return run.kept_writable("user_data", typed)
 
     def _user_data_of_firmware(self, program: Path) -> npt.NDArray[Any]:
-        if USER_DATA not in variables_of(program):
-            raise SimulationError(f"{program} has no user data (REGISTER_USERDATA)")
-        kind = variables_of(program)[USER_DATA].type
-        found = np.zeros(len(self.robot_categories), dtype=kind)
-        for number, name in enumerate(self.categories):
-            with contextlib.suppress(ConfigurationError):  # something else drives its robots
-                found[self.robot_categories == number] = self.firmware_variable(USER_DATA, name)
+        user_data = variables_of(program).get(USER_DATA)
+        if user_data is None:
+            raise NoVariableError(f"{program} has no user data (REGISTER_USERDATA)")
+        found = self._memory_of(program, user_data)[0]
         found.flags.writeable = False
         return found
+
+    def _memory_of(self, firmware: Path, variable: Variable) -> tuple[npt.NDArray[Any], npt.NDArray[np.bool_]]:
+        """Return a variable of all robots, 0 for those that do not run the firmware, and which do."""
+        with self._busy():
+            memory, runs_it = self._run.firmware_bytes(
+                firmware, len(self.robot_categories), variable.address, variable.type.itemsize
+            )
+        return variable.values(memory), runs_it
 
     def firmware_variable(
         self, name: str, category: str = "robots", *, firmware: PathLike | None = None
     ) -> npt.NDArray[Any]:
         """Return a copy of a variable of robots that run firmware. Shape (robots of the category, ...).
+
+        Zero for robots of the category that something else drives, where its entries differ.
 
         Args:
             name: A variable that is not on the stack, such as "opinion"; "mydata" is USERDATA, a structured array.
@@ -496,24 +502,27 @@ class Simulation:
             firmware: Its ELF file; None: `program`.
 
         Raises:
-            ConfigurationError: The robots of the category do not run firmware.
+            ConfigurationError: An argument is of a wrong type, there is no such category, or no robot of it runs this
+                firmware.
             SimulationError: The file has no such variable, or no debug information.
         """
-        run = self._run
         check_process(self._current.process)
+        name, category = given.text("name", name), given.text("category", category)
         file = self.program if firmware is None else given.path("firmware", firmware)
         if file is None:
             raise SimulationError("the simulation has no program: name the firmware")
         known = variables_of(file)
         if name not in known:
             own = [other for other in known if not other.startswith("_") and not other.isupper()]  # not the library's
-            raise SimulationError(f"{file} has no variable {shown(name)}{advice(str(name), own)}")
-        number = self.categories.index(category) if category in self.categories else -1
-        count = int(np.count_nonzero(self.robot_categories == number))
-        variable = known[name]
-        with self._busy():
-            memory = run.firmware_bytes(category, count, variable.address, variable.type.itemsize)
-        return variable.values(memory)
+            raise NoVariableError(f"{file} has no variable {shown(name)}{advice(name, own)}")
+        if category not in self.categories:
+            raise ConfigurationError(f"there is no category {shown(category)}{advice(category, self.categories)}")
+        entries = [number for number, name in enumerate(self.categories) if name == category]
+        of_category = np.isin(self.robot_categories, entries)
+        values, runs_it = self._memory_of(file, known[name])
+        if of_category.any() and not (of_category & runs_it).any():
+            raise ConfigurationError(f"category {shown(category)} does not run the firmware {file}")
+        return values[of_category]
 
     def brain(self, category: str) -> Brain:
         """Return the arrays that drive the robots of a category whose configuration says `brain: host`, see `Brain`.

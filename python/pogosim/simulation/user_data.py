@@ -11,7 +11,7 @@ from elftools.common.exceptions import ELFError
 from elftools.dwarf.die import DIE
 from elftools.elf.elffile import ELFFile
 
-from pogosim.simulation.errors import SimulationError
+from pogosim.simulation.errors import NoVariableError, SimulationError
 
 # DWARF, version 5, 7.8: encodings of base types.
 BOOLEAN, FLOAT, SIGNED, SIGNED_CHAR, UNSIGNED, UNSIGNED_CHAR = 0x02, 0x04, 0x05, 0x06, 0x07, 0x08
@@ -150,10 +150,11 @@ def user_data_type(program: Path, size_bytes: int) -> np.dtype[Any]:
         size_bytes: What the simulator says of its size.
 
     Raises:
-        SimulationError: The program has no user data, or no debug information about them.
+        NoVariableError: The program has no user data.
+        SimulationError: It has no debug information about them.
     """
     if size_bytes == 0:
-        raise SimulationError(f"{program} has no user data (REGISTER_USERDATA); use columns of the data file")
+        raise NoVariableError(f"{program} has no user data (REGISTER_USERDATA); use columns of the data file")
     try:
         status = program.stat()
         found = type_in(program, (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns))
