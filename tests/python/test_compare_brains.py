@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from robot_sdk import TRIPLE, need
-from running import Run, ran, write_scene
+from running import Run, Settings, ran, write_scene
 
 PROGRAM = """#include "pogobase.h"
 typedef struct {{ uint32_t count; int16_t sign; uint32_t size; float mean; void* self; }} USERDATA;
@@ -29,10 +29,17 @@ int main(void) {{
 """
 
 
+ROBOT_ENTRY = {"type": "pogobot", "nb": 2, "geometry": "disk", "radius": 26.5}
+
+
 def compared(folder: Path, step: str, *options: str) -> Run:
+    return compared_text(folder, PROGRAM.format(step=step), {"parameters": {"unused": 3}}, *options)
+
+
+def compared_text(folder: Path, text: str, settings: Settings, *options: str) -> Run:
     need(f"{TRIPLE}-gcc")
-    (folder / "main.c").write_text(PROGRAM.format(step=step))
-    write_scene(folder, {"parameters": {"unused": 3}})
+    (folder / "main.c").write_text(text)
+    write_scene(folder, settings)
     return ran(folder, sys.executable, "-m", "pogosim", "compare-brains", "main.c", "-c", "scene.yaml", *options)
 
 
@@ -62,6 +69,67 @@ def test_comparison_ends_where_it_is_told_to(tmp_path: Path) -> None:
     assert compared(tmp_path, "if (pogobot_ticks > 30) { mydata->size = sizeof(long); }", "--until", "0.3").code == 0
     step = "mydata->size = sizeof(long); mydata->sign = (int16_t)sizeof(void*);"
     assert len(compared(tmp_path, step, "--most", "1").output.splitlines()) >= 2
+
+
+def test_program_without_user_data_is_compared(tmp_path: Path) -> None:
+    text = """#include "pogobot.h"
+    static uint8_t count;
+    int main(void) {
+        pogobot_init();
+        while (1) { count += {step}; pogobot_led_setColor(count, 0, 0); msleep(50); }
+    }"""
+    without = "there is no USERDATA to compare: the program has none"
+    equal = compared_text(tmp_path, text.replace("{step}", "1"), {})
+    assert equal.code == 0, equal.text
+    assert equal.output.splitlines() == [
+        "equal for 2 s: 3 robots do the same as a program and as firmware",
+        without,
+    ]
+    different = compared_text(tmp_path, text.replace("{step}", "sizeof(long)"), {})
+    assert different.code == 1, different.text
+    assert " leds " in different.output
+    assert different.output.splitlines()[-1] == without
+
+
+def test_program_that_only_writes_its_user_data_is_compared(tmp_path: Path) -> None:
+    text = """#include "pogobase.h"
+    typedef struct { int count; } USERDATA;
+    DECLARE_USERDATA(USERDATA)
+    REGISTER_USERDATA(USERDATA)
+    void user_step(void) { mydata->count = 5; }
+    int main(void) { pogobot_init(); pogobot_start(user_step, user_step); }"""
+    result = compared_text(tmp_path, text, {})
+    assert result.code == 0, result.text
+    assert result.output.splitlines()[-1] == (
+        "there is no USERDATA to compare: the robots' compiler leaves out what the program only writes"
+    )
+
+
+def test_entries_of_a_list_that_need_a_program_are_compared(tmp_path: Path) -> None:
+    scripted = {**ROBOT_ENTRY, "brain": {"script": []}}
+    settings = {"objects": {"robots": [ROBOT_ENTRY, scripted, {**ROBOT_ENTRY, "brain": "program"}]}}
+    equal = compared_text(tmp_path, PROGRAM.format(step=""), settings)
+    assert equal.code == 0, equal.text
+    assert equal.output.splitlines() == ["equal for 2 s: 4 robots do the same as a program and as firmware"]
+    step = "if (pogobot_helper_getid() == 5) { mydata->size = sizeof(long); }"
+    different = compared_text(tmp_path, PROGRAM.format(step=step), settings)
+    assert different.code == 1, different.text
+    assert re.split(r"  +", different.output.splitlines()[1])[2:] == ["#5", "mydata.size", "8", "4"]
+
+
+def test_files_that_a_single_run_writes_are_not_written(tmp_path: Path) -> None:
+    settings = {"message_log": "messages.feather", "flash_state": {"output_file": "robots.flash"}}
+    result = compared_text(tmp_path, PROGRAM.format(step=""), settings)
+    assert result.code == 0, result.text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["main.c", "scene.yaml"]
+
+
+def test_failed_run_names_no_file_that_is_gone(tmp_path: Path) -> None:
+    result = compared(tmp_path, "if (pogobot_ticks > 20) { *(volatile int*)4 = 1; }")
+    assert result.code == 2
+    line = result.errors.splitlines()[-1]
+    assert line.startswith("pogosim compare-brains: the user program failed in user_step of robot #0")
+    assert "data file" not in line
 
 
 @pytest.mark.parametrize(

@@ -633,6 +633,111 @@ def test_run_without_a_profile_is_an_error(simulator: Callable[[str], Path], cap
     assert "has written no profile: is it of another version?" in refusal(capfd, "fw.elf", "-c", "c.yaml")
 
 
+def test_profile_of_a_run_just_made_is_not_called_by_its_temporary_name(
+    simulator: Callable[[str], Path], capfd: pytest.CaptureFixture[str]
+) -> None:
+    Path("fw.elf").write_bytes(ELF)
+    write_profile(Path("empty.json"), raw_profile({("main",): (0, 0, 0)}, ticks=[]))
+    simulator(f"cp {Path('empty.json').absolute()} $raw")
+    assert refusal(capfd, "fw.elf", "-c", "c.yaml").startswith("the profile of this run: no tick ended, so there is")
+    assert refusal(capfd, "empty.json").startswith("empty.json: no tick ended, so there is")
+    simulator("echo 1 >$raw")
+    assert refusal(capfd, "fw.elf", "-c", "c.yaml").startswith("the profile of this run is JSON, but no profile: ")
+
+
+CONFIGURATION = {
+    "arena_file": "my.csv",
+    "formation_filename": "formation.csv",
+    "data_filename": "results/data.csv",
+    "magnetometer": {"csv": {"file": "table.csv"}},
+    "flash_state": {"input_file": "old.json", "output_file": "new.json"},
+    "objects": {"robots": [{"robot_model": "model.yaml"}, {"function_costs": "conf/costs.yaml"}]},
+}
+
+
+@pytest.fixture
+def inputs(simulator: Callable[[], Path]) -> None:
+    """Write a configuration and all files that it names, a firmware, and links to some of them."""
+    simulator()
+    for folder in ("conf", "results", "build"):
+        Path(folder).mkdir()
+    for name in ("my.csv", "conf/formation.csv", "table.csv", "old.json", "new.json", "other.csv", "script.yaml"):
+        Path(name).write_text(name)
+    for name in ("conf/costs.yaml", "results/data.csv", "results/data.csv.yaml", "data.feather", "build/weights.csv"):
+        Path(name).write_text(name)
+    Path("fw.elf").write_bytes(ELF)
+    Path("conf/c.json").write_text(json.dumps(CONFIGURATION))
+    Path("model.yaml").write_text("brain: {script: script.yaml}")
+    Path("main.c").write_text('#include "build/weights.csv"\n')
+    for name, target in (("a.csv", "my.csv"), ("source.csv", "main.c"), ("data.svg", "data.feather")):
+        Path(name).symlink_to(target)
+    Path("hard.csv").hardlink_to("my.csv")
+
+
+@pytest.mark.parametrize(
+    ("option", "output", "said"),
+    [
+        ("raw", "conf/c.json", "conf/c.json, the configuration"),
+        ("csv", "my.csv", "my.csv, arena_file of conf/c.json"),
+        ("csv", "a.csv", "my.csv, arena_file of conf/c.json"),
+        ("csv", "hard.csv", "my.csv, arena_file of conf/c.json"),
+        ("csv", "conf/formation.csv", "conf/formation.csv, formation_filename of conf/c.json"),
+        ("csv", "table.csv", "table.csv, magnetometer.csv.file of conf/c.json"),
+        ("raw", "old.json", "old.json, flash_state.input_file of conf/c.json"),
+        ("trace", "new.json", "new.json, flash_state.output_file of conf/c.json"),
+        ("costs", "model.yaml", "model.yaml, objects.robots.0.robot_model of conf/c.json"),
+        ("costs", "script.yaml", "script.yaml, brain.script of model.yaml"),
+        ("costs", "conf/costs.yaml", "conf/costs.yaml, objects.robots.1.function_costs of conf/c.json"),
+        ("csv", "results/data.csv", "results/data.csv, data_filename of conf/c.json"),
+        ("costs", "results/data.csv.yaml", "results/data.csv.yaml, the metadata of results/data.csv"),
+        ("csv", "other.csv", "other.csv, arena_file of the command line"),
+        ("csv", "source.csv", "{folder}/main.c, a source file of the program"),
+        ("csv", "build/weights.csv", "{folder}/build/weights.csv, a source file of the program"),
+    ],
+)
+@pytest.mark.usefixtures("inputs")
+def test_no_output_takes_the_place_of_a_file_of_the_run(
+    option: str, output: str, said: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["fw.elf", "-c", "conf/c.json", "--set", "arena_file=other.csv", f"--{option}", output]
+    place = said.format(folder=tmp_path)
+    assert refusal(capfd, *arguments) == f"--{option} would take the place of {place}; name another output"
+
+
+@pytest.mark.usefixtures("inputs")
+def test_files_that_are_no_inputs_are_replaced(capfd: pytest.CaptureFixture[str]) -> None:
+    assert profile("fw.elf", "-c", "conf/c.json", "--csv", "other.csv") == 0, capfd.readouterr().err
+    assert Path("other.csv").read_text().startswith(",".join(COLUMNS))
+
+
+@pytest.mark.parametrize("words", [["-cconf/c.json"], ["--config=conf/c.json"], ["-s", "1", "--config", "conf/c.json"]])
+@pytest.mark.usefixtures("inputs")
+def test_configuration_is_an_input_however_it_is_named(words: list[str], capfd: pytest.CaptureFixture[str]) -> None:
+    assert refusal(capfd, "fw.elf", *words, "--raw", "conf/c.json").endswith("the configuration; name another output")
+
+
+@pytest.mark.parametrize("word", ["--set=arena_file=other.csv", "--video=other.csv", "other.csv"])
+@pytest.mark.usefixtures("inputs")
+def test_files_of_the_command_line_are_inputs(word: str, capfd: pytest.CaptureFixture[str]) -> None:
+    said = refusal(capfd, "fw.elf", "-c", "conf/c.json", word, "--csv", "other.csv")
+    assert "--csv would take the place of other.csv, " in said
+    assert "the command line" in said
+
+
+@pytest.mark.usefixtures("inputs")
+def test_data_file_without_a_name_in_the_configuration_is_an_input(capfd: pytest.CaptureFixture[str]) -> None:
+    Path("short.yaml").write_text("arena_file: my.csv\n")
+    said = refusal(capfd, "fw.elf", "-c", "short.yaml", "--flame", "data.svg")
+    assert said == "--flame would take the place of data.feather, data_filename of the run; name another output"
+
+
+@pytest.mark.usefixtures("inputs")
+def test_reports_of_a_kept_profile_take_no_sources_place(capfd: pytest.CaptureFixture[str]) -> None:
+    write_profile(Path("p.json"), swarm_profile())
+    assert "main.c, a source file of the program" in refusal(capfd, "p.json", "--csv", "source.csv")
+    assert Path("main.c").read_text().startswith("#include")
+
+
 def test_what_is_no_program_is_refused(simulator: Callable[[], Path], capsys: pytest.CaptureFixture[str]) -> None:
     called = simulator()
     Path("x.bin").write_bytes(b"x")

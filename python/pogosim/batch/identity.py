@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.errors import BatchError, cannot
+from pogosim.batch.named_files import entries_in, may_be_a_name, texts_at
 from pogosim.batch.names import COLUMNS, FORMAT
 from pogosim.batch.option_words import CHOICES
 from pogosim.batch.run_files import without_outputs
 from pogosim.firmware import is_firmware
 from pogosim.installation import find_installation
-from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml
+from pogosim.yaml_1_2 import dump_yaml
 
 # Keys that say, beside the names of outputs, where results go, not what they are.
 NOT_IN_THE_WORLD = (FORMAT, COLUMNS, "optimization", CHOICES)
@@ -95,28 +96,6 @@ def file_digest(path: Path) -> str:
         return ""
 
 
-def entries_in(path: Path) -> Any:
-    """Return what a file in YAML holds, such as a robot model; None: it is no such file."""
-    if path.suffix not in (".yaml", ".yml"):
-        return None
-    try:
-        return parse_yaml(path.read_text())
-    except (OSError, *WRONG_VALUES):
-        return None
-
-
-def texts_in(node: Any) -> Iterator[str]:
-    """Yield all strings in a configuration."""
-    if isinstance(node, dict):
-        for value in node.values():
-            yield from texts_in(value)
-    elif isinstance(node, list):
-        for value in node:
-            yield from texts_in(value)
-    elif isinstance(node, str):
-        yield node
-
-
 def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: dict[Path, str]) -> str:
     """Return a digest of the configuration of a run, and of the files that it names (arenas, robot models).
 
@@ -136,8 +115,8 @@ def world_digest(entries: dict[str, Any], folders: tuple[Path, ...], digests: di
 
 def named_digests(node: Any, folders: tuple[Path, ...], digests: dict[Path, str]) -> Iterator[str]:
     """Yield the digests of files that a configuration, or a file in YAML, names; see `world_digest`."""
-    for text in texts_in(node):
-        if 0 < len(text) < 1024 and "\0" not in text:
+    for _, text in texts_at(node):
+        if may_be_a_name(text):
             for path in [folder / text for folder in folders]:
                 if path not in digests:
                     digests[path] = ""  # for files that name each other

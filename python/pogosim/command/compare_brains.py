@@ -9,7 +9,7 @@ import math
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pogosim.command.parser import Parser, complain, finite, guarded, warn, whole
 from pogosim.errors import ToolError
@@ -18,6 +18,9 @@ from pogosim.firmware.making import FirmwareError, made_in, temporary_project
 from pogosim.installation import find_installation
 from pogosim.lines import say
 from pogosim.projects import run_make
+
+if TYPE_CHECKING:
+    from pogosim.firmware.comparing import Difference
 
 EPILOG = """PROGRAM is the folder of a project, or a .c or .cpp file; it is built as a program in C and as firmware
 (make emu). Both run with the same seed, where code takes no time and random numbers are the simulator's, and with the
@@ -98,22 +101,31 @@ def compare(options: argparse.Namespace) -> int:
             Comparison(program, firmware, configuration, options.category, settings) as comparison,
         ):
             if comparison.robots == 0:
-                raise FirmwareError(f"{configuration} has no robots of the category '{options.category}'")
+                raise FirmwareError(
+                    f"{configuration} has no robots of the category '{options.category}' that run the program"
+                )
             comparison.tolerance = options.tolerance
             found = comparison.run(options.until, options.most)
-            robots, time_s = comparison.robots, comparison.time_s
+            robots, time_s, without = comparison.robots, comparison.time_s, comparison.without_user_data
     except SimulationError as error:
         raise ToolError(str(error)) from None
     if not found:
         say(f"equal for {time_s:g} s: {robots} robots do the same as a program and as firmware")
-        return 0
+    else:
+        say(*table_of(found))
+    if without:
+        say(f"there is no USERDATA to compare: {without}")
+    return 1 if found else 0
+
+
+def table_of(found: Sequence[Difference]) -> list[str]:
+    """Return lines that list differences."""
     rows = [("time (s)", "tick", "robot", "variable", "program", "firmware")]
     rows += [
         (f"{d.time_s:.3f}", str(d.tick), f"#{d.robot}", d.name, shown(d.program), shown(d.firmware)) for d in found
     ]
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    say(*("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip() for row in rows))
-    return 1
+    return ["  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim compare-brains") -> int:

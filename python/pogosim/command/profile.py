@@ -13,9 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pogosim.command.parser import Parser, complain, guarded, warn, whole
-from pogosim.command.run import has_configuration
+from pogosim.command.run import configured, has_configuration
 from pogosim.extensions import let_find_models
 from pogosim.firmware.profile.flame import write_flame
+from pogosim.firmware.profile.function_costs import write_function_costs
+from pogosim.firmware.profile.inputs import check_outputs, inputs_of, sources_in
 from pogosim.firmware.profile.raw import Profile, ProfileError, read_profile
 from pogosim.firmware.profile.report import report_of
 from pogosim.firmware.profile.sources import Sources, folders_of
@@ -36,6 +38,7 @@ WRITERS: dict[str, tuple[str, Callable[[Profile, Path], None]]] = {
     "csv": ("csv", write_table),
     "flame": ("svg", write_flame),
     "trace": ("json", write_trace),
+    "costs": ("yaml", write_function_costs),
 }
 
 
@@ -80,6 +83,9 @@ def parser(prog: str) -> Parser:
     made.add_argument("--csv", metavar="FILE.csv", help="write functions and lines as one table")
     made.add_argument("--flame", metavar="FILE.svg", help="write a flame graph")
     made.add_argument("--trace", metavar="FILE.json", help="write the first ticks for Perfetto or chrome://tracing")
+    made.add_argument(
+        "--costs", metavar="FILE.yaml", help="write what functions take, for programs in C (function_costs)"
+    )
     made.add_argument("--raw", metavar="FILE.json", help="keep the profile as the simulator writes it")
     return made
 
@@ -104,11 +110,11 @@ def outputs_of(options: argparse.Namespace, program: Path) -> dict[str, Path]:
 
 
 @contextlib.contextmanager
-def measured(program: Path, robots: int, options: Sequence[str]) -> Iterator[Measured]:
+def measured(program: Path, robots: int, options: Sequence[str], outputs: dict[str, Path]) -> Iterator[Measured]:
     """Run a program and read its profile, or read that of an earlier run; its file is there until the end of the block.
 
     Raises:
-        ToolError: There is no such program, or no profile of it.
+        ToolError: There is no such program, or no profile of it; or an output would take the place of an input.
         FailedError: The run has failed.
         OSError: A file cannot be read.
     """
@@ -117,33 +123,23 @@ def measured(program: Path, robots: int, options: Sequence[str]) -> Iterator[Mea
             raise ProfileError(f"{program} is the profile of a run that is over: expected no options of the simulator")
         profile = read_profile(program)
         folders = (*folders_of(Path(profile.firmware)), program.absolute().parent)
+        check_outputs(outputs, sources_in(folders))
         yield Measured(profile, program, folders)
         return
     from pogosim.firmware.making import firmware_of
     from pogosim.firmware.profile.running import profile_run
 
     chosen = configured(program, options)
+    if not has_configuration(chosen):
+        raise ProfileError("expected a configuration: -c CONFIG")
     pogosim = find_installation()
+    check_outputs(outputs, inputs_of(program, chosen, pogosim))
     with tempfile.TemporaryDirectory(prefix="pogosim-profile-") as folder, firmware_of(program, pogosim) as made:
         raw = Path(folder, "profile.json")
         code = profile_run(made.firmware, raw, robots, chosen, pogosim)
         if code != 0:
             raise FailedError(code)
-        yield Measured(read_profile(raw), raw, made.folders)
-
-
-def configured(program: Path, options: Sequence[str]) -> list[str]:
-    """Return options of the simulator with a configuration: a project has one of its own.
-
-    Raises:
-        ProfileError: There is none.
-    """
-    own = program / "conf" / "test.yaml"
-    if has_configuration(options):
-        return list(options)
-    if own.is_file():
-        return ["-c", str(own), *options]
-    raise ProfileError("expected a configuration: -c CONFIG")
+        yield Measured(read_profile(raw, "the profile of this run"), raw, made.folders)
 
 
 def write(measurement: Measured, outputs: dict[str, Path]) -> None:
@@ -170,7 +166,7 @@ def run(program: Path, options: argparse.Namespace, of_simulator: Sequence[str])
     """
     outputs = outputs_of(options, program)
     try:
-        with measured(program, options.robots, of_simulator) as measurement:
+        with measured(program, options.robots, of_simulator, outputs) as measurement:
             write(measurement, outputs)
             if options.text or not outputs:
                 say(*report_of(measurement.profile, Sources(measurement.folders)))

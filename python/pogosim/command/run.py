@@ -151,10 +151,13 @@ def command_of(what: Path | None, options: Sequence[str], pogosim: Installation)
     if what is None and not Path("Makefile").is_file() and has_configuration(options):
         return [str(pogosim.without_program), *options]
     folder = Path() if what is None else what
-    program = program_of(folder, pogosim)
-    configuration = folder / "conf" / "test.yaml"
-    chosen = [] if has_configuration(options) or not configuration.is_file() else ["-c", str(configuration)]
-    return [str(program), *chosen, *options]
+    return [str(program_of(folder, pogosim)), *configured(folder, options)]
+
+
+def configured(folder: Path, options: Sequence[str]) -> list[str]:
+    """Return options of the simulator with a configuration: that of a project, if it has one and they name none."""
+    own = folder / "conf" / "test.yaml"
+    return list(options) if has_configuration(options) or not own.is_file() else ["-c", str(own), *options]
 
 
 def has_configuration(options: Sequence[str]) -> bool:

@@ -11,9 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.simulation import Simulation
+from pogosim.simulation.errors import NoVariableError
 
 # What the simulator says of robots in both runs.
 STATE = ("ticks", "leds", "positions", "headings", "messages_sent", "messages_received")
+USER_DATA = "mydata"
+PROGRAM = "program"  # the default of `brain`
+# Two runs cannot write one file, and messages would name a data file that is in a temporary folder.
+IN_BOTH = {"parameters": {}, "enable_data_logging": False, "message_log": "", "flash_state.output_file": ""}
 _POINTERS_FROM = 2**32  # addresses of a process are above those of a robot
 
 
@@ -67,16 +72,59 @@ def differing(program: npt.NDArray[Any], firmware: npt.NDArray[Any], tolerance: 
 
 
 def variables(
-    simulation: Simulation, is_chosen: npt.NDArray[np.bool_], user_data: npt.NDArray[Any]
+    simulation: Simulation, is_chosen: npt.NDArray[np.bool_], user_data: npt.NDArray[Any] | None
 ) -> dict[str, npt.NDArray[Any]]:
-    """Return what is compared of the chosen robots, by name; `user_data` is that of these robots."""
+    """Return what is compared of the chosen robots, by name; `user_data` is theirs, None: they have none."""
     found = {name: getattr(simulation, name)[is_chosen] for name in STATE}
-    found.update(flattened(user_data, "mydata"))
+    if user_data is not None:
+        found.update(flattened(user_data, USER_DATA))
     return found
 
 
+@dataclass(frozen=True)
+class Entry:
+    """An entry of a category, which has several if it is a list.
+
+    Attributes:
+        number: Its place in `Simulation.categories`.
+        key: What says what drives its robots, "objects.robots.brain" or "objects.robots.0.brain".
+        brain: The value of that key.
+    """
+
+    number: int
+    key: str
+    brain: Any
+
+    @property
+    def is_program(self) -> bool:
+        """Whether the program in C drives its robots."""
+        return bool(self.brain == PROGRAM)
+
+
+def numbers_of(simulation: Simulation, category: str) -> list[int]:
+    """Return the places in `simulation.categories` of the entries of a category, in the order of the configuration."""
+    return [number for number, name in enumerate(simulation.categories) if name == category]
+
+
+def entries_of(simulation: Simulation, category: str) -> list[Entry]:
+    """Return the entries of a category that have robots; `simulation` records rows, and with them its configuration."""
+    found = simulation.to_dataframe().attrs["resolved_configuration"]["objects"].get(category)
+    listed = found if isinstance(found, list) else [found]
+    numbers = numbers_of(simulation, category)
+    above = f"objects.{category}"
+    return [
+        Entry(number, f"{above}.{place}.brain" if found is listed else f"{above}.brain", entry.get("brain", PROGRAM))
+        for place, (number, entry) in enumerate(zip(numbers, listed, strict=bool(numbers)))
+        if number in simulation.robot_categories
+    ]
+
+
 class Comparison:
-    """Two runs of one configuration, in lockstep."""
+    """Two runs of one configuration, in lockstep.
+
+    Attributes:
+        without_user_data: Why there is no USERDATA to compare; empty: there is, or nothing has been compared yet.
+    """
 
     def __init__(
         self, program: Path, firmware: Path, configuration: Path, category: str, settings: Mapping[str, Any]
@@ -93,18 +141,27 @@ class Comparison:
         Raises:
             SimulationError: One of them cannot be run.
         """
-        common = {**settings, "parameters": {}}
+        common = {**settings, **IN_BOTH}
+        warned: set[str] = set()
+        self._program = Simulation(program, configuration, set=common, warned=warned)
+        seed = self._program.seed
+        recorded = {**common, "enable_data_logging": True}
+        with Simulation(program, configuration, seed=seed, set=recorded, warned=warned) as recording:
+            entries = entries_of(recording, category)
+            recording.discard()
         brain = {"firmware": str(firmware.resolve()), "random": "simulator"}
-        self._program = Simulation(program, configuration, set=common)
-        self._firmware = Simulation(
-            program, configuration, seed=self._program.seed, set={**common, f"objects.{category}.brain": brain}
-        )
+        # An unknown category is told by the simulator.
+        keys = [entry.key for entry in entries if entry.is_program] if entries else [f"objects.{category}.brain"]
+        brains = dict.fromkeys(keys, brain)
+        self._firmware = Simulation(program, configuration, seed=seed, set={**common, **brains}, warned=warned)
         self._file = firmware
         self._category = category
-        chosen = self._program.categories.index(category) if category in self._program.categories else -1
-        self._is_chosen = self._program.robot_categories == chosen
+        of_robots = self._program.robot_categories
+        self._is_chosen = np.isin(of_robots, [entry.number for entry in entries if entry.is_program])
+        self._is_of_category = np.isin(of_robots, numbers_of(self._program, category))
         self.found: dict[str, Difference] = {}
         self.tolerance = 0.0
+        self.without_user_data = ""
 
     def __enter__(self) -> Comparison:
         """Close both runs at the end of the block."""
@@ -138,9 +195,25 @@ class Comparison:
             self._look()
         return sorted(self.found.values(), key=lambda difference: difference.time_s)
 
+    def _user_data(self) -> tuple[npt.NDArray[Any] | None, npt.NDArray[Any] | None]:
+        """Return USERDATA of the chosen robots in both runs; None if one of them has none, which is kept."""
+        if self.without_user_data:
+            return None, None
+        try:
+            of_program = self._program.user_data[self._is_chosen]
+        except NoVariableError:
+            self.without_user_data = "the program has none"
+            return None, None
+        try:
+            of_firmware = self._firmware.firmware_variable(USER_DATA, self._category, firmware=self._file)
+        except NoVariableError:
+            self.without_user_data = "the robots' compiler leaves out what the program only writes"
+            return None, None
+        return of_program, of_firmware[self._is_chosen[self._is_of_category]]
+
     def _look(self) -> None:
-        in_program = variables(self._program, self._is_chosen, self._program.user_data[self._is_chosen])
-        of_firmware = self._firmware.firmware_variable("mydata", self._category, firmware=self._file)
+        of_program, of_firmware = self._user_data()
+        in_program = variables(self._program, self._is_chosen, of_program)
         in_firmware = variables(self._firmware, self._is_chosen, of_firmware)
         for name, values in in_program.items():
             if name in self.found or name not in in_firmware:
