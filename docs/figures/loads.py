@@ -1,4 +1,4 @@
-"""The table of docs/profiling.md: what a tick of each example takes of a robot's processor.
+"""What a tick of each example takes of a robot's processor: the table of docs/profiling.md, and a file of costs.
 
 .venv/bin/python docs/figures/all.py loads
 """
@@ -11,12 +11,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pogosim.firmware.making import made_in
+from pogosim.firmware.profile.function_costs import write_function_costs
 from pogosim.firmware.profile.load import load_of
 from pogosim.firmware.profile.raw import Profile, read_profile
 from pogosim.installation import Installation, find_installation
 from quotes import Quote
 
-NAMES = ("profiling.md: loads",)
+NAMES = ("profiling.md: loads", "firmware.md: costs")
+WITH_COSTS = "push_sum"  # the example whose file is shown
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 OF_TEMPLATE = ("Makefile", "robot.mk")
@@ -89,8 +91,11 @@ def row(name: str, profile: Profile) -> str:
 
 
 def draw(folder: Path) -> dict[str, Quote]:
-    """Write the table."""
+    """Write the table and the file."""
     pogosim = find_installation()
-    rows = [row(example.name, profile_of(example, folder, pogosim)) for example in sources()]
+    profiles = {example.name: profile_of(example, folder, pogosim) for example in sources()}
+    rows = [row(name, profile) for name, profile in profiles.items()]
+    costs = folder / "costs.yaml"
+    write_function_costs(profiles[WITH_COSTS], costs)
     head = ("| example | mean | 95 % of the ticks at most | worst tick | memory |", "|---|---|---|---|---|")
-    return {NAMES[0]: Quote((*head, *rows))}
+    return {NAMES[0]: Quote((*head, *rows)), NAMES[1]: Quote(tuple(costs.read_text().splitlines()))}
