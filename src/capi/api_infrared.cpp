@@ -242,9 +242,7 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
     auto const received =
         context.has_robot() ? pogosim::receive(*context.world, context.robot) : std::optional<pogosim::Message>();
     if (!received) {
-        context.services->warn_once(
-            "pogobot_infrared_recover_next_message was called with no message waiting: check "
-            "pogobot_infrared_message_available() first");
+        context.services->warn_once_of({.text = pogosim::kNothingToReceive}, "{}", pogosim::kNothingToReceive);
         return;
     }
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).

@@ -37,7 +37,7 @@ std::span<Key<FunctionCost> const> cost_keys() {
 std::vector<FunctionCost> read_function_costs(MapReader& robot) {
     Node const* const node = robot.find("function_costs");
     std::vector<FunctionCost> costs;
-    if (node == nullptr) {
+    if (node == nullptr || !robot.reading().firmware.empty()) {  // firmware is in the place of the program
         return costs;
     }
     WrittenValue const written =

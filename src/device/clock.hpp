@@ -36,7 +36,9 @@ inline void drift_clock(World& world, std::uint32_t robot, std::int64_t since_us
 inline void take_time(World& world, std::uint32_t robot, double us, double& rest_us) {
     rest_us += us;
     double const whole_us = std::floor(rest_us);
-    world.devices.clock_us[robot] += static_cast<std::int64_t>(whole_us);
+    std::int64_t& clock_us = world.devices.clock_us[robot];
+    auto const most_us = static_cast<double>(std::max<std::int64_t>(0, kIdle - 1 - clock_us));
+    clock_us += static_cast<std::int64_t>(std::min(whole_us, most_us));
     rest_us -= whole_us;
 }
 

@@ -7,12 +7,18 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "world/world.hpp"
 
 namespace pogosim {
 
 inline constexpr std::uint8_t kMostIrPower = 3;
+
+/// Said once to a program that takes a message where there is none.
+inline constexpr std::string_view kNothingToReceive =
+    "pogobot_infrared_recover_next_message was called with no message waiting: check "
+    "pogobot_infrared_message_available() first";
 
 /// What a robot sends. Emitters: bit d is emitter d.
 struct Packet {

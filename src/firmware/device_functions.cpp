@@ -1,4 +1,6 @@
 // LEDs, motors and sensors of a robot, for a firmware.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -100,7 +102,7 @@ CallOutcome get_light(FirmwareCall& call) {
     call.give_signed(-1);
     if (is_light_sensor(call.model(), sensor, call) && has_body(call)) {
         if (call.world.lamps.empty()) {
-            call.warn_once(kNoLamps);
+            call.warn_once(kNoLamps, fmt::format("{}(): {}", call.function, kNoLamps));
         }
         call.give_signed(read_photosensor(call.world, call.robot, sensor));
     }

@@ -1,9 +1,8 @@
 #include "firmware/firmware_call.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <bit>
+#include <utility>
 
 namespace pogosim {
 
@@ -14,8 +13,8 @@ std::uint32_t FirmwareCall::ticks() const {
     return place == nullptr ? 0 : read_little_endian<4>(place);
 }
 
-void FirmwareCall::warn_once(std::string_view what) const {
-    out.said.push_back({robot, ticks(), Slip{function, {}, {}, what}, fmt::format("{}(): {}", function, what)});
+void FirmwareCall::warn_once(std::string_view kind, std::string text) const {
+    out.said.push_back({robot, ticks(), Slip{function, {}, {}, kind}, std::move(text)});
 }
 
 void FirmwareCall::give_float(float result) const {

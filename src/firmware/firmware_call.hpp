@@ -95,8 +95,8 @@ struct FirmwareCall {
         out.said.push_back({robot, ticks(), slip, slip_text(slip, value)});
     }
 
-    /// Warns once in a run for each function.
-    void warn_once(std::string_view what) const;
+    /// Warns once in a run for each function and `kind`, a literal.
+    void warn_once(std::string_view kind, std::string text) const;
 
     /// Notes wrong arguments, see device/arguments.hpp.
     template <class Value>

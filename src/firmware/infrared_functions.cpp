@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "device/arguments.hpp"
 #include "device/remote_control.hpp"
@@ -209,9 +210,7 @@ CallOutcome clear_queue(FirmwareCall& call) {
 CallOutcome take_message(FirmwareCall& call) {
     std::optional<Message> const message = receive(call.world, call.robot);
     if (!message) {
-        call.note_slip(
-            {"the queue", "a message in it (call pogobot_infrared_message_available() first)", "nothing is written"},
-            "empty");
+        call.warn_once(kNothingToReceive, std::string(kNothingToReceive));
         return CallOutcome::returns;
     }
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES), so nothing is written behind the payload.

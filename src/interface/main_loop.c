@@ -18,23 +18,18 @@ POGO_PER_ROBOT uint32_t _current_time_milliseconds = 0;
 POGO_PER_ROBOT uint32_t _error_code_initial_time = 0;  // 0: no error is shown
 
 #ifdef REAL_ROBOT
-#define LET_TIME_PASS()
-#define CALL_MSG_TX_FN() msg_tx_fn()
-#define TAKE_TIME_OF(function)
-#define TAKE_TIME_OF_TICK(user_step)
+#define pogosim_let_time_pass()
+#define pogosim_call_msg_tx_fn(send) send()
+#define pogosim_take_time_of(function)
+#define pogosim_take_time_of_tick(user_step)
 #else
 #include "pogosim/program.h"
-// In the simulator, a program that reads its clock again and again waits, and may go on in another thread. It may do so
-// only here, where no address of a thread-local variable is kept: in this file, the timers' functions do not wait.
-#define LET_TIME_PASS() pogosim_let_time_pass()
-#define CALL_MSG_TX_FN() pogosim_call_msg_tx_fn(msg_tx_fn)
-// Code takes no time in the simulator, but what the configuration says it would take on the robot.
-#define TAKE_TIME_OF(function) pogosim_take_time_of((void (*)(void))(function))
-#define TAKE_TIME_OF_TICK(user_step) pogosim_take_time_of_tick(user_step)
+// In the simulator, a program waits here that reads its clock again and again, or whose functions take time. It may go
+// on in another thread, so no address of a thread-local variable is kept here; the timers' functions do not wait.
 #endif
 
 uint32_t current_time_milliseconds(void) {
-    LET_TIME_PASS();
+    pogosim_let_time_pass();
     // Moves the origin by whole milliseconds, so that the rest is not lost and the stopwatch never overflows.
     int32_t const us = pogobot_stopwatch_get_elapsed_microseconds(&_global_timer);
     if (us >= 1000 || us <= -1000) {
@@ -60,7 +55,7 @@ void display_led_error_code(error_code_t code) {
 }
 
 static void send_message_by_chance(void) {
-    if (msg_tx_fn && rand() % 100 < percent_msgs_sent_per_ticks && CALL_MSG_TX_FN()) {
+    if (msg_tx_fn && rand() % 100 < percent_msgs_sent_per_ticks && pogosim_call_msg_tx_fn(msg_tx_fn)) {
         nb_msgs_sent++;
     }
 }
@@ -70,11 +65,12 @@ static void process_received_messages(void) {
         return;
     }
     pogobot_infrared_update();
-    for (uint8_t n = 0; n < max_nb_processed_msg_per_tick && pogobot_infrared_message_available(); n++) {
+    for (uint8_t n = 0; msg_rx_fn && n < max_nb_processed_msg_per_tick && pogobot_infrared_message_available(); n++) {
         message_t message;
+        void (*const receive)(message_t*) = msg_rx_fn;  // which it may change
         pogobot_infrared_recover_next_message(&message);
-        msg_rx_fn(&message);
-        TAKE_TIME_OF(msg_rx_fn);
+        receive(&message);
+        pogosim_take_time_of((void (*)(void))receive);
         nb_msgs_recv++;
     }
     pogobot_infrared_clear_message_queue();
@@ -107,7 +103,7 @@ void pogo_main_loop_step(void (*user_step)(void)) {
     if (user_step) {
         user_step();
     }
-    TAKE_TIME_OF_TICK(user_step);
+    pogosim_take_time_of_tick(user_step);
     send_message_by_chance();
     process_received_messages();
     sleep_until_next_tick();

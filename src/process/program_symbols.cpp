@@ -37,6 +37,12 @@ std::string name_by_symbol(std::string const& symbol) {
     return name;
 }
 
+std::string ProgramFunction::name() const {
+    std::string const written = name_by_symbol(symbol);
+    std::size_t const parameters = written.find('(', written.starts_with('(') ? 1 : 0);  // "(anonymous namespace)::f()"
+    return written.substr(0, parameters);
+}
+
 #ifdef __linux__
 
 namespace {
@@ -217,8 +223,7 @@ void for_each_function(std::span<char const> bytes, See const& see) {
 std::vector<ProgramFunction> functions_of(std::span<char const> bytes) {
     std::vector<ProgramFunction> functions;
     for_each_function(bytes, [&](Elf64_Sym const& symbol, std::string_view name) {
-        std::string const written = name_by_symbol(std::string(name));
-        functions.push_back({.name = written.substr(0, written.find('(')), .address = symbol.st_value});
+        functions.push_back({.symbol = std::string(name), .address = symbol.st_value});
     });
     return functions;
 }

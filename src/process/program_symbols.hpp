@@ -43,8 +43,11 @@ ProgramSymbols symbols_of(std::span<char const> file);
 
 /// A function of a program.
 struct ProgramFunction {
-    std::string name;            // as the program writes it: "user_step", also for "user_step()" in C++
+    std::string symbol;          // of the linker: in C++, with the types of its parameters
     std::uintptr_t address = 0;  // from where the program is loaded
+
+    /// As the program writes it: "user_step", also for "user_step()" in C++.
+    std::string name() const;
 };
 std::vector<ProgramFunction> functions_of(std::span<char const> file);
 

@@ -75,6 +75,7 @@ struct Controller {
     std::string printed;                   // a line not yet complete
     FunctionTimes const* times = nullptr;  // null: its code takes no time
     double rest_us = 0.0;                  // less than a microsecond, for which its clock has not gone on
+    double polled_us = 0.0;                // of its clock, in loops of the call that runs now
 };
 
 }  // namespace pogosim

@@ -29,14 +29,20 @@ void sleep_until(std::int64_t clock_us) {
     wait_for_step(Waiting::always);
 }
 
+void wait_for_clock() {
+    wait_for_step(Waiting::always);
+}
+
 void take_time_to_read_clock() {
     context.clock_us() += kCallUs;
+    context.controller->polled_us += kCallUs;
     wait_for_step(Waiting::always);
 }
 
 void take_time_to_read_input() {
     if (context.waiting != Waiting::never) {
         context.clock_us() += kCallUs;
+        context.controller->polled_us += kCallUs;
         wait_for_step(Waiting::for_inputs);
     }
 }

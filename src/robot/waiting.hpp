@@ -15,6 +15,9 @@ namespace pogosim {
 /// The robot sleeps until its clock shows this time; one that has passed counts as any other call.
 void sleep_until(std::int64_t clock_us);
 
+/// The clock has gone on: the robot goes on when it is reached, perhaps in another thread.
+void wait_for_clock();
+
 void take_time_to_read_clock();
 void take_time_to_read_input();
 

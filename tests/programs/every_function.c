@@ -244,6 +244,7 @@ void user_step(void) {
             break;
         case 51:
             IR_reset_interrupt_flags();
+            pogobot_infrared_recover_next_message(&mydata->message);  // there is none
             break;
         case 55:
             sleep(1);

@@ -687,7 +687,6 @@ def inputs(simulator: Callable[[], Path]) -> None:
         ("trace", "new.json", "new.json, flash_state.output_file of conf/c.json"),
         ("costs", "model.yaml", "model.yaml, objects.robots.0.robot_model of conf/c.json"),
         ("costs", "script.yaml", "script.yaml, brain.script of model.yaml"),
-        ("costs", "conf/costs.yaml", "conf/costs.yaml, objects.robots.1.function_costs of conf/c.json"),
         ("csv", "results/data.csv", "results/data.csv, data_filename of conf/c.json"),
         ("costs", "results/data.csv.yaml", "results/data.csv.yaml, the metadata of results/data.csv"),
         ("csv", "other.csv", "other.csv, arena_file of the command line"),

@@ -139,7 +139,7 @@ TEST(FunctionTimes, UnknownNamesAndFunctionsWithoutCostsAreTold) {
                         "'timed_step'?"),
               std::string::npos)
         << said;
-    EXPECT_NE(said.find("objects.robots.function_costs say nothing of timed_step, which takes no time"),
+    EXPECT_NE(said.find("objects.robots.function_costs say nothing of timed_step, which the main loop has called"),
               std::string::npos)
         << said;
 }

@@ -15,8 +15,15 @@ from pogosim.firmware.profile.routines import family_of
 
 MAIN_LOOP = "pogo_main_loop_step"
 DIGITS = 6  # significant ones, of a number in the file
-# What the main loop itself calls, besides routines of the compiler and functions with a name of the robots' library.
-OF_MAIN_LOOP = re.compile(r"pogobot_.*|_.*|s?rand(?:om)?|msleep|qualitative_colormap|mem(?:cpy|set)")
+USER_STEP = "user_step"
+# What the main loop itself calls (pogosim/main_loop.c), besides the compiler's helpers.
+OF_MAIN_LOOP = re.compile(
+    r"__(?!Z).*|_?rand(?:om)?(?:_r)?|msleep|qualitative_colormap|mem(?:cpy|set)|pogobot_led_setColors"
+    r"|pogobot_infrared_(?:update|message_available|recover_next_message|clear_message_queue)"
+    r"|pogobot_stopwatch_(?:reset|get_elapsed_microseconds|offset_origin_microseconds)"
+)
+# What the linker adds to the names of static functions when it optimises the whole program.
+SUFFIXES = re.compile(r"(?:\.(?:lto_priv|constprop|isra|part|cold)(?:\.\d+)?)+$")
 
 
 @dataclass
@@ -44,6 +51,8 @@ def costs_of_calls(profile: Profile) -> dict[str, CallCost]:
     helpers, library = helpers_of(profile, main_loop), library_of(profile)
     costs: defaultdict[str, CallCost] = defaultdict(CallCost)
     costs[MAIN_LOOP].calls = len(profile.ticks)
+    if USER_STEP in profile.functions:
+        costs[USER_STEP].calls = 0.0  # also if it does nothing
     for stack in profile.stacks:
         depth = depth_of_callee(stack, main_loop, helpers)
         is_called = depth < len(stack.frames) and stack.frames[depth] not in library
@@ -100,8 +109,8 @@ def depth_of_callee(stack: Stack, main_loop: int, helpers: frozenset[int]) -> in
 
 
 def name_in_program(name: str) -> str:
-    """Return the name of a function without the types of its parameters, which C++ adds."""
-    return name.partition("(")[0]
+    """Return the name of a function as the program's own compiler gives it: functions of one name share their costs."""
+    return SUFFIXES.sub("", name)
 
 
 def write_function_costs(profile: Profile, file: Path) -> None:
