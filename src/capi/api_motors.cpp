@@ -1,6 +1,8 @@
 // pogolib/motors.h
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "device/motors.hpp"
 #include "robot/context.hpp"
@@ -74,7 +76,7 @@ int8_t pogobot_motor_dir_mem_set(uint8_t* p_directions) {
     if (!has_place(__func__, "p_directions", p_directions)) {
         return -1;
     }
-    pogosim::check_stored_directions({p_directions, kMotorCount}, NoteSlip{__func__});
+    pogosim::check_stored(std::span<std::uint8_t const>(p_directions, kMotorCount), NoteSlip{__func__});
     std::copy_n(p_directions, kMotorCount, own_motors().stored_direction.begin());
     return 0;
 }
@@ -93,7 +95,7 @@ uint8_t pogobot_motor_power_mem_set(uint16_t* p_powers) {
     if (!has_place(__func__, "p_powers", p_powers)) {
         return UINT8_MAX;
     }
-    pogosim::check_stored_powers({p_powers, kMotorCount}, NoteSlip{__func__});
+    pogosim::check_stored(std::span<std::uint16_t const>(p_powers, kMotorCount), NoteSlip{__func__});
     std::copy_n(p_powers, kMotorCount, own_motors().stored_power.begin());
     return 0;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -271,17 +270,11 @@ BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
 }
 
 std::vector<KeyDescription> firmware_map_keys() {
-    std::vector<KeyDescription> keys;
-    std::ranges::transform(firmware_keys(), std::back_inserter(keys),
-                           [](Key<FirmwareSpec> const& key) { return describe(key, FirmwareSpec()); });
-    return keys;
+    return described(firmware_keys());
 }
 
 std::vector<KeyDescription> script_entry_keys() {
-    std::vector<KeyDescription> keys;
-    std::ranges::transform(entry_keys(), std::back_inserter(keys),
-                           [](Key<Entry> const& key) { return describe(key, Entry()); });
-    return keys;
+    return described(entry_keys());
 }
 
 }  // namespace pogosim

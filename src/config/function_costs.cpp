@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,10 +59,7 @@ std::vector<FunctionCost> read_function_costs(MapReader& robot) {
 }
 
 std::vector<KeyDescription> function_cost_keys() {
-    std::vector<KeyDescription> keys;
-    std::ranges::transform(cost_keys(), std::back_inserter(keys),
-                           [](Key<FunctionCost> const& key) { return describe(key, FunctionCost()); });
-    return keys;
+    return described(cost_keys());
 }
 
 }  // namespace pogosim

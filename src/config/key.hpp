@@ -10,7 +10,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -161,6 +163,15 @@ KeyDescription describe(Key<T> const& key, T const& defaults) {
                },
                key.field);
     return description;
+}
+
+/// The same of all keys of a table.
+template <class T>
+std::vector<KeyDescription> described(std::span<Key<T> const> keys, T const& defaults = {}) {
+    std::vector<KeyDescription> descriptions;
+    std::ranges::transform(keys, std::back_inserter(descriptions),
+                           [&](Key<T> const& key) { return describe(key, defaults); });
+    return descriptions;
 }
 
 }  // namespace pogosim

@@ -345,14 +345,6 @@ void refuse_equal_faces(MapReader const& reader, std::vector<Face> const& faces)
     }
 }
 
-template <class T>
-std::vector<KeyDescription> described(std::span<Key<T> const> keys, T const& defaults) {
-    std::vector<KeyDescription> descriptions;
-    std::ranges::transform(keys, std::back_inserter(descriptions),
-                           [&](Key<T> const& key) { return describe(key, defaults); });
-    return descriptions;
-}
-
 }  // namespace
 
 void read_model(MapReader& reader, RobotSpec& robot) {

@@ -84,24 +84,24 @@ void check_direction(std::uint8_t direction, Note const& note) {
     }
 }
 
-/// Values for the persistent memory of motors.
 template <class T, class Note>
-void check_stored(std::string_view name, std::span<T const> values, T most, std::string_view expected,
-                  Note const& note) {
+void check_each(std::string_view name, std::span<T const> values, T most, std::string_view expected, Note const& note) {
     auto const wrong = std::ranges::find_if(values, [most](T value) { return value > most; });
     if (wrong != values.end()) [[unlikely]] {
         note(WrongArgument{name, expected, "it is stored as it is"}, *wrong);
     }
 }
 
+/// Directions for the persistent memory of motors.
 template <class Note>
-void check_stored_directions(std::span<std::uint8_t const> directions, Note const& note) {
-    check_stored<std::uint8_t>("p_directions", directions, 1, "0 or 1 for each motor", note);
+void check_stored(std::span<std::uint8_t const> directions, Note const& note) {
+    check_each<std::uint8_t>("p_directions", directions, 1, "0 or 1 for each motor", note);
 }
 
+/// Powers for it.
 template <class Note>
-void check_stored_powers(std::span<std::uint16_t const> powers, Note const& note) {
-    check_stored<std::uint16_t>("p_powers", powers, kFullMotorPower, "0 to 1023 (motorFull) for each motor", note);
+void check_stored(std::span<std::uint16_t const> powers, Note const& note) {
+    check_each<std::uint16_t>("p_powers", powers, kFullMotorPower, "0 to 1023 (motorFull) for each motor", note);
 }
 
 /// `name`: "milliseconds".

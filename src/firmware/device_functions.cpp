@@ -75,18 +75,11 @@ CallOutcome get_stored(FirmwareCall& call) {
     return CallOutcome::returns;
 }
 
-CallOutcome set_stored_directions(FirmwareCall& call) {
-    auto& stored = motors_of(call).stored_direction;
+template <auto Values>
+CallOutcome set_stored(FirmwareCall& call) {
+    auto& stored = motors_of(call).*Values;
     call.read(call.argument(0), std::as_writable_bytes(std::span(stored)));
-    check_stored_directions(stored, call);
-    call.give(0);
-    return CallOutcome::returns;
-}
-
-CallOutcome set_stored_powers(FirmwareCall& call) {
-    auto& stored = motors_of(call).stored_power;
-    call.read(call.argument(0), std::as_writable_bytes(std::span(stored)));
-    check_stored_powers(stored, call);
+    check_stored(stored, call);
     call.give(0);
     return CallOutcome::returns;
 }
@@ -195,9 +188,9 @@ std::span<LibraryFunction const> device_functions() {
         LibraryFunction{"pogobot_motor_dir_set", set_direction, &CallTimes::motor_us},
         LibraryFunction{"pogobot_motor_dir_current_status", get_directions},
         LibraryFunction{"pogobot_motor_dir_mem_get", get_stored<&Motors::stored_direction>, &CallTimes::flash_read_us},
-        LibraryFunction{"pogobot_motor_dir_mem_set", set_stored_directions, &CallTimes::flash_write_us},
+        LibraryFunction{"pogobot_motor_dir_mem_set", set_stored<&Motors::stored_direction>, &CallTimes::flash_write_us},
         LibraryFunction{"pogobot_motor_power_mem_get", get_stored<&Motors::stored_power>, &CallTimes::flash_read_us},
-        LibraryFunction{"pogobot_motor_power_mem_set", set_stored_powers, &CallTimes::flash_write_us},
+        LibraryFunction{"pogobot_motor_power_mem_set", set_stored<&Motors::stored_power>, &CallTimes::flash_write_us},
         LibraryFunction{"pogobot_photosensors_read", get_light, &CallTimes::light_sensor_us},
         LibraryFunction{"pogobot_battery_voltage_read", get_voltage, &CallTimes::light_sensor_us},
         LibraryFunction{"pogobot_imu_read", get_motion, &CallTimes::imu_us},

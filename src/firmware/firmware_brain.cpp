@@ -43,9 +43,9 @@ struct Failed : std::exception {
 
 /// Whether a function of the library is at an address.
 bool is_call_of_library(Code const& code, std::uint32_t address) {
-    std::size_t const index = (address - code.address) / 4;
-    return address >= code.address && index < code.steps.size() &&
-           code.steps[index].operation == Operation::intercepted && intercepted_number(code, address) >= 0;
+    std::uint32_t const offset = address - code.address;
+    return offset < code.bytes() && code.steps[offset / 4].operation == Operation::intercepted &&
+           intercepted_number(code, address) >= 0;
 }
 
 bool same_slip(Slip const& a, Slip const& b) {

@@ -540,6 +540,7 @@ ConfiguredVariables Controllers::configured_variables() const {
 
 void Controllers::tick(std::uint32_t robot) {
     Controller& self = controllers_[robot];
+    self.polled_us = 0.0;
     measure_at_tick(world_, robot);
     enter(robot, Phase::user_step);
     if (are_odd(self.loop, most_loop_hz_)) [[unlikely]] {

@@ -43,30 +43,31 @@ FunctionTimes::FunctionTimes(std::string const& category, RobotSpec const& spec,
                    category_);
         return;
     }
+    std::vector<std::string> names;
+    std::ranges::transform(functions_, std::back_inserter(names), &ProgramFunction::name);
     std::vector<std::string> unknown;
     for (FunctionCost const& cost : spec.function_costs) {
         double const us = spec.model.processor.us_of(cost.cycles) + cost.library_us;
         if (cost.function == kMainLoop) {
             main_loop_us_ = us;
-        } else if (!add(cost.function, us)) {
+        } else if (!add(cost.function, us, names)) {
             unknown.push_back(cost.function);
         }
     }
     if (!unknown.empty()) {
-        std::vector<std::string> names;
-        std::ranges::transform(functions_, std::back_inserter(names), &ProgramFunction::name);
         std::string const more = unknown.size() > 1 ? fmt::format(", nor {} more", unknown.size() - 1) : "";
         log().warn("objects.{}.function_costs: the program has no function '{}'{}{}", category_,
                    escaped(unknown.front()), more, did_you_mean(unknown.front(), names));
     }
 }
 
-/// False: there is no function of this name. If there are several, static in their files, all take this time.
-bool FunctionTimes::add(std::string const& name, double us) {
+/// False: there is no function of this name. If there are several, static in their files, all take this time. `names`:
+/// of all functions, in their order.
+bool FunctionTimes::add(std::string const& name, double us, std::span<std::string const> names) {
     std::size_t const before = times_.size();
-    for (ProgramFunction const& function : functions_) {
-        if (function.symbol == name || function.name() == name) {
-            times_.push_back({.function = load_address_ + function.address, .us = us});
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+        if (functions_[i].symbol == name || names[i] == name) {
+            times_.push_back({.function = load_address_ + functions_[i].address, .us = us});
         }
     }
     return times_.size() > before;

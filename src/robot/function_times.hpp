@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ private:
         double us = 0.0;
     };
 
-    bool add(std::string const& name, double us);
+    bool add(std::string const& name, double us, std::span<std::string const> names);
     void note_without_costs(std::uintptr_t function) const;
 
     std::string category_;

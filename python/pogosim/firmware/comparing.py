@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from pogosim.simulation import Simulation
 from pogosim.simulation.errors import NoVariableError
+from pogosim.simulation.firmware_variables import USER_DATA
 
 # What the simulator says of robots in both runs.
 STATE = ("ticks", "leds", "positions", "headings", "messages_sent", "messages_received")
-USER_DATA = "mydata"
 PROGRAM = "program"  # the default of `brain`
 # Two runs cannot write one file, and messages would name a data file that is in a temporary folder.
 IN_BOTH = {"parameters": {}, "enable_data_logging": False, "message_log": "", "flash_state.output_file": ""}

@@ -12,6 +12,7 @@ import yaml
 from pogosim.firmware.profile.costs import files_of_functions, functions_of_library
 from pogosim.firmware.profile.raw import Profile, ProfileError, Stack
 from pogosim.firmware.profile.routines import family_of
+from pogosim.lines import counted
 
 MAIN_LOOP = "pogo_main_loop_step"
 DIGITS = 6  # significant ones, of a number in the file
@@ -128,6 +129,6 @@ def write_function_costs(profile: Profile, file: Path) -> None:
         for name, cost in costs_of_calls(profile).items()
     }
     text = yaml.safe_dump({"function_costs": mean}, sort_keys=False, allow_unicode=True)
-    ticks = f"{len(profile.ticks)} tick{'' if len(profile.ticks) == 1 else 's'}"
+    ticks = counted(len(profile.ticks), "tick")
     firmware = Path(profile.firmware).name
     file.write_text(f"# What a call takes on the robot: means over {ticks} of {firmware}.\n{text}", encoding="utf-8")
