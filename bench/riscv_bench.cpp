@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
         std::string const bytes = bytes_of(file);
         std::span const all = std::as_bytes(std::span(bytes));
         Firmware const firmware = read_firmware(file, all);
-        Firmware const counting = read_firmware(file, all, {}, {1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+        Firmware const counting = read_firmware(file, all, {}, {1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0});
         for (Workload const& work : {Workload{"crc", kCrc, 1'000'000}, Workload{"floats", kFloats, 300'000},
                                      Workload{"sort", kSort, 200}, Workload{"mixture", kMixture, 50'000}}) {
             measure(firmware, counting, work);

@@ -145,6 +145,8 @@ std::span<Key<CycleCosts> const> cycle_keys() {
         K{"branch_predicted_not_taken", &CycleCosts::branch_predicted_not_taken, most, "cycles",
           "A branch forwards that is not taken."},
         K{"branch_mispredicted", &CycleCosts::branch_mispredicted, most, "cycles", "Any other branch."},
+        K{"cache_miss", &CycleCosts::cache_miss, between(0, 1000), "cycles",
+          "Fetching a line of 32 bytes of code that is not in the instruction cache of 2 KiB. 0: all code is in it."},
     };
     return keys;
 }

@@ -173,23 +173,27 @@ Stop Profile::run(std::uint32_t robot, Core& core, Memory& memory, Code const& c
                   double clock_us) {
     Robot& self = robot_of(robot);
     std::uint64_t const begin = core.cycles;
-    if (!self.frames.empty() && self.frames.back().returns_to == core.pc) {  // of a function of the library
+    bool const was_in_library = std::exchange(self.is_in_library, false);
+    if (was_in_library && !self.frames.empty() && self.frames.back().returns_to == core.pc) {
         end_span(self.frames.back(), clock_us);
         self.frames.pop_back();
     }
     while (core.cycles - begin < most_cycles) {
         std::uint32_t const from = core.pc;
         std::uint64_t const before = core.cycles;
+        std::uint64_t const misses_before = core.cache.misses;
         Stop const stop = pogosim::run(core, memory, code, 1);
         std::uint64_t const cycles = core.cycles - before;
         if (cycles == 0) {
+            self.is_in_library = stop.reason == StopReason::intercepted;
             return stop;
         }
-        Step const& step = code.steps[(from - code.address) / 4];
+        Step const& step = *code.step_at(from);
         if (self.ticks_begun > 0) {
             cost_of(path_at(self, from), self.path_costs, self.used_paths).cycles += cycles;
             cost_of(line_at(from), self.line_costs, self.used_lines).add({.cycles = cycles, .calls = 1});
             self.tick.cycles += cycles;
+            self.tick.miss_cycles += code.cache_miss * (core.cache.misses - misses_before);
         }
         note_memory(self, step, core);
         if (core.pc != from + 4) {
@@ -345,13 +349,14 @@ void Profile::write() {
                          return fmt::format("{{\"id\": {}, \"category\": {}}}", robot.id, json_text(robot.category));
                      })
         << ",\n\"ticks\": "
-        << json_list(
-               ticks_,
-               [this](Tick const& tick) {
-                   return fmt::format(
-                       "{{\"robot\": {}, \"tick\": {}, \"begin_s\": {:.6f}, \"cycles\": {}, \"call_us\": {:.3f}}}",
-                       robot_of(tick.robot).id, tick.number, tick.begin_us * 1e-6, tick.cycles, tick.call_us);
-               })
+        << json_list(ticks_,
+                     [this](Tick const& tick) {
+                         return fmt::format(
+                             "{{\"robot\": {}, \"tick\": {}, \"begin_s\": {:.6f}, \"cycles\": {}, \"miss_cycles\": {}, "
+                             "\"call_us\": {:.3f}}}",
+                             robot_of(tick.robot).id, tick.number, tick.begin_us * 1e-6, tick.cycles, tick.miss_cycles,
+                             tick.call_us);
+                     })
         << ",\n\"functions\": "
         << json_list(places_->functions(), [](std::string const& name) { return json_text(escaped(name)); })
         << ",\n\"lines\": "

@@ -74,6 +74,7 @@ private:
         std::uint32_t number;
         double begin_us;
         std::uint64_t cycles = 0;
+        std::uint64_t miss_cycles = 0;  // of those, waiting for code that is not in the instruction cache
         double call_us = 0.0;
     };
 
@@ -96,6 +97,7 @@ private:
         std::uint32_t lowest_stack = ~0U;
         std::uint32_t highest_heap = 0;
         int ticks_begun = 0;
+        bool is_in_library = false;  // it has called a function of it, or is about to
         Tick tick{};
         // Costs in this tick, by path and by line, which count when it has ended.
         std::vector<Cost> path_costs{};

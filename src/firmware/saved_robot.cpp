@@ -14,6 +14,8 @@ void visit_values(Robot& robot, Visit const& visit) {
     visit(robot.core.x);
     visit(robot.core.pc);
     visit(robot.core.cycles);
+    visit(robot.core.cache.held);
+    visit(robot.core.cache.misses);
     visit(robot.seeds.first);
     visit(robot.seeds.is_first_taken);
     visit(robot.seeds.later);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "riscv/instruction_cache.hpp"
 #include "riscv/memory_image.hpp"
 
 namespace pogosim {
@@ -110,7 +111,10 @@ void set_other_cycles(std::uint32_t index, CycleCosts const& costs, Code& code) 
 Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleCosts const& costs) {
     assert(address % 4 == 0);
     std::size_t const words = bytes.size() / 4;
-    Code code{.address = address, .steps = std::vector<Step>(words + 1), .cycles_before{}};
+    Code code{.address = address,
+              .steps = std::vector<Step>(words + 1),
+              .cycles_before{},
+              .cache_miss = static_cast<std::uint32_t>(costs.cache_miss)};
     code.cycles_before.push_back(0);
     for (std::uint32_t i = 0; i < words; ++i) {
         Instruction const read = decode(read_little_endian<4>(&bytes[4 * i]));
@@ -124,26 +128,28 @@ Code decode_code(std::uint32_t address, std::span<std::byte const> bytes, CycleC
     }
     code.steps.back() = {.operation = Operation::jump_outside,
                          .immediate = static_cast<std::int32_t>(address + code.bytes())};
+    std::uint32_t end = 0;
     for (auto i = static_cast<std::uint32_t>(code.steps.size()); i-- > 0;) {
         set_other_cycles(i, costs, code);
-        code.steps[i].cycles_to_end =
-            ends_sum(code.steps[i].operation) ? code.cycles_before[i] : code.steps[i + 1].cycles_to_end;
+        end = ends_sum(code.steps[i].operation) ? i : end;
+        std::uint32_t const lines = cache_line(address + 4 * end) - cache_line(address + 4 * i) + 1;
+        code.steps[i].cycles_to_end = code.cycles_before[end] + lines * code.cache_miss;
     }
     return code;
 }
 
 bool intercept(Code& code, std::uint32_t address, std::int32_t number) {
-    std::uint32_t const offset = address - code.address;
-    if (offset % 4 != 0 || offset >= code.bytes()) {
+    if (code.step_at(address) == nullptr) {
         return false;
     }
+    std::uint32_t const offset = address - code.address;
     code.steps[offset / 4].operation = Operation::intercepted;
     code.steps[offset / 4].immediate = number;
     return true;
 }
 
 std::int32_t intercepted_number(Code const& code, std::uint32_t address) {
-    return code.steps[(address - code.address) / 4].immediate;
+    return code.step_at(address)->immediate;
 }
 
 }  // namespace pogosim

@@ -30,22 +30,34 @@ inline constexpr std::uint8_t kUnread = 32;  // a register after x31, in the pla
 
 /// Read-only while robots run it, on any number of threads. Robots cannot change their code.
 ///
-/// Cycles are not counted instruction by instruction. cycles_before is what all instructions in front of a step take
-/// together, with branches that are not taken and shifts by one bit; the cycles between two steps that are executed one
-/// after the other are a difference. Only what leaves this order, or takes longer, counts:
+/// Cycles are not counted instruction by instruction. cycles_before is the sum of what all instructions in front of a
+/// step take at least: branches that are not taken, shifts by one bit. So straight code costs a subtraction.
+/// Corrections are needed only for what leaves this order, or takes longer:
 ///
 ///     other_cycles    of a branch or jal: what is added to (cycles that have passed) - (cycles_before of the step)
 ///                     when it is taken; of jalr: the cycles it takes; of a shift by a register: the cycles of a
 ///                     further bit
-///     cycles_to_end   cycles_before of the next step, or this one, after which one of those may have changed the sum:
-///                     jal, jalr, a shift by a register, or a stop. If a core has more cycles left, it need not look
-///                     before it gets there, or takes a branch.
+///     cycles_to_end   cycles_before of the next step, from this one on, that may jump or take further cycles: jal,
+///                     jalr, a shift by a register, or a stop; with a cache miss for each line up to there. A core with
+///                     more cycles left need not look at its budget until then, or until it takes a branch.
 struct Code {
     std::uint32_t address = 0;                 // of the first instruction; a multiple of 4
     std::vector<Step> steps;                   // one for each word, then one that stops at the end
     std::vector<std::uint32_t> cycles_before;  // of each step
+    std::uint32_t cache_miss = 0;              // cycles
 
     std::uint32_t bytes() const { return static_cast<std::uint32_t>(4 * (steps.size() - 1)); }
+
+    /// Whether any of some bytes in memory are of the code.
+    bool overlaps(std::uint32_t begin, std::uint64_t size) const {
+        return size > 0 && begin < std::uint64_t{address} + bytes() && address < begin + size;
+    }
+
+    /// The step of the instruction at a place in memory. Null if none is there.
+    Step const* step_at(std::uint32_t place) const {
+        std::uint32_t const offset = place - address;
+        return offset % 4 == 0 && offset < bytes() ? &steps[offset / 4] : nullptr;
+    }
 };
 
 /// Decodes the words at an address. Words that are no instruction, such as constants between functions, stop a robot

@@ -11,10 +11,10 @@ namespace {
 /// x0 to x31, then one for results that nothing reads.
 using Registers = std::array<std::uint32_t, 33>;
 
-/// A step, and the cycles that were left before the sum of all steps in front of it, see Code.
 struct Position {
     Step const* step;
-    std::int64_t cycles;
+    std::int64_t cycles;     // that were left before the sum of all steps in front of it, see Code
+    Step const* not_looked;  // where caches count: the first step since the last jump that has not been looked up yet
 };
 
 /// Why a part of a run ended, and where: no instruction was begun there.
@@ -99,12 +99,6 @@ std::uint32_t address_of(Step const* step, Code const& code) {
     return code.address + static_cast<std::uint32_t>(4 * (step - code.steps.data()));
 }
 
-/// Null if no instruction is at an address.
-Step const* step_at(std::uint32_t address, Code const& code) {
-    std::uint32_t const offset = address - code.address;
-    return offset % 4 == 0 && offset < code.bytes() ? code.steps.data() + offset / 4 : nullptr;
-}
-
 std::int64_t cycles_left(Position at, Code const& code) {
     return at.cycles - code.cycles_before[static_cast<std::size_t>(at.step - code.steps.data())];
 }
@@ -116,10 +110,28 @@ std::int64_t jump_cycles(Step const* jump, Step const* target, Code const& code)
            code.cycles_before[static_cast<std::size_t>(target - first)];
 }
 
+/// Looks up the steps in front of one that have been executed since the last jump. What a miss takes counts late, but
+/// before the core looks for the end of its budget.
+void look_up(Step const* end, Code const& code, Position& at, InstructionCache& cache) {
+    if (at.not_looked == end) {
+        return;
+    }
+    std::uint32_t const last = cache_line(address_of(end - 1, code));
+    for (std::uint32_t line = cache_line(address_of(at.not_looked, code)); line <= last; ++line) {
+        at.cycles -= cache.fetches(line) ? code.cache_miss : 0;
+    }
+    at.not_looked = end;
+}
+
+void jump_to(Step const* target, Position& at) {
+    at.step = target;
+    at.not_looked = target;
+}
+
 void branch(bool is_taken, Position& at) {
     if (is_taken) {
         at.cycles -= at.step->other_cycles;
-        at.step += at.step->immediate;
+        jump_to(at.step + at.step->immediate, at);
     } else {
         ++at.step;
     }
@@ -181,10 +193,21 @@ StopReason reason_of(AccessFault fault) {
         goto* kLabels[static_cast<std::size_t>(at.step->operation)]; \
     } while (false)
 
-#define POGOSIM_NEXT   \
-    do {               \
-        ++at.step;     \
-        POGOSIM_GO_ON; \
+// The step has been executed, and the next one may be anywhere.
+#define POGOSIM_LOOK_UP                            \
+    do {                                           \
+        if (CountsMisses) {                        \
+            look_up(at.step + 1, code, at, cache); \
+        }                                          \
+    } while (false)
+
+#define POGOSIM_NEXT           \
+    do {                       \
+        if (LooksAtEachStep) { \
+            POGOSIM_LOOK_UP;   \
+        }                      \
+        ++at.step;             \
+        POGOSIM_GO_ON;         \
     } while (false)
 
 // After what has changed the sum of cycles.
@@ -196,10 +219,10 @@ StopReason reason_of(AccessFault fault) {
         POGOSIM_GO_ON;                                                 \
     } while (false)
 
-/// Executes steps until the core has to stop. If it must not look for the end of the budget before each of them, it
-/// ends near it, where it would have to look, with budget_used.
-template <bool LooksAtEachStep>
-Outcome execute(Registers& x, Memory& memory, Code const& code, Position at) {
+/// Executes steps until the core has to stop. Without LooksAtEachStep, it looks at its budget only where the sum of
+/// cycles may change, and returns budget_used as soon as the budget might end before the next look.
+template <bool LooksAtEachStep, bool CountsMisses>
+Outcome execute(Registers& x, Memory& memory, InstructionCache& cache, Code const& code, Position at) {
     // In the order of Operation.
     static constexpr void const* kLabels[] = {
         &&illegal, &&lui,   &&auipc, &&jal,    &&jalr,   &&beq,   &&bne,         &&blt,          &&bge,
@@ -269,16 +292,19 @@ and_:
     POGOSIM_NEXT;
 sll:
     x[at.step->rd] = a << (b % 32);
+    POGOSIM_LOOK_UP;
     at.cycles -= further_bits(b) * at.step->other_cycles;
     ++at.step;
     POGOSIM_LOOK_AND_GO_ON;
 srl:
     x[at.step->rd] = a >> (b % 32);
+    POGOSIM_LOOK_UP;
     at.cycles -= further_bits(b) * at.step->other_cycles;
     ++at.step;
     POGOSIM_LOOK_AND_GO_ON;
 sra:
     x[at.step->rd] = as_unsigned(as_signed(a) >> (b % 32));
+    POGOSIM_LOOK_UP;
     at.cycles -= further_bits(b) * at.step->other_cycles;
     ++at.step;
     POGOSIM_LOOK_AND_GO_ON;
@@ -350,35 +376,44 @@ sw:
     POGOSIM_NEXT;
 
 beq:
+    POGOSIM_LOOK_UP;
     branch(a == b, at);
     POGOSIM_LOOK_AND_GO_ON;
 bne:
+    POGOSIM_LOOK_UP;
     branch(a != b, at);
     POGOSIM_LOOK_AND_GO_ON;
 blt:
+    POGOSIM_LOOK_UP;
     branch(as_signed(a) < as_signed(b), at);
     POGOSIM_LOOK_AND_GO_ON;
 bge:
+    POGOSIM_LOOK_UP;
     branch(as_signed(a) >= as_signed(b), at);
     POGOSIM_LOOK_AND_GO_ON;
 bltu:
+    POGOSIM_LOOK_UP;
     branch(a < b, at);
     POGOSIM_LOOK_AND_GO_ON;
 bgeu:
+    POGOSIM_LOOK_UP;
     branch(a >= b, at);
     POGOSIM_LOOK_AND_GO_ON;
 jal:
     x[at.step->rd] = address_of(at.step, code) + 4;
+    POGOSIM_LOOK_UP;
     branch(true, at);
     POGOSIM_LOOK_AND_GO_ON;
 jalr : {
     std::uint32_t const target = address & ~1U;
-    Step const* const next = step_at(target, code);
+    Step const* const next = code.step_at(target);
     if (next == nullptr) [[unlikely]] {
         return {at, StopReason::jump_outside, target};
     }
     x[at.step->rd] = address_of(at.step, code) + 4;
-    at = {next, at.cycles - jump_cycles(at.step, next, code)};
+    POGOSIM_LOOK_UP;
+    at.cycles -= jump_cycles(at.step, next, code);
+    jump_to(next, at);
     POGOSIM_LOOK_AND_GO_ON;
 }
 
@@ -408,14 +443,31 @@ auipc:  // has become lui
 
 #undef POGOSIM_LOOK_AND_GO_ON
 #undef POGOSIM_NEXT
+#undef POGOSIM_LOOK_UP
 #undef POGOSIM_GO_ON
 #pragma GCC diagnostic pop
 
 constexpr std::uint64_t kMostCycles = std::numeric_limits<std::int64_t>::max() / 2;
 
+/// See run_instructions().
+template <bool CountsMisses>
+Outcome execute_until(Registers& x, Memory& memory, InstructionCache& cache, Code const& code, Position at) {
+    Outcome outcome{at, StopReason::budget_used};
+    if (at.cycles > at.step->cycles_to_end) {
+        outcome = execute<false, CountsMisses>(x, memory, cache, code, at);
+        if (CountsMisses) {
+            look_up(outcome.at.step, code, outcome.at, cache);
+        }
+    }
+    if (outcome.reason == StopReason::budget_used) {
+        outcome = execute<true, CountsMisses>(x, memory, cache, code, outcome.at);
+    }
+    return outcome;
+}
+
 /// Runs until the end, or an instruction that is not executed here. `most_cycles` is not above kMostCycles.
 Stop run_instructions(Core& core, Memory& memory, Code const& code, std::uint64_t most_cycles) {
-    Step const* const step = step_at(core.pc, code);
+    Step const* const step = code.step_at(core.pc);
     if (step == nullptr) {
         return {StopReason::jump_outside, core.pc, core.pc};
     }
@@ -424,13 +476,9 @@ Stop run_instructions(Core& core, Memory& memory, Code const& code, std::uint64_
     x[0] = 0;
     auto const budget = static_cast<std::int64_t>(most_cycles);
     std::int64_t const begin = budget + code.cycles_before[static_cast<std::size_t>(step - code.steps.data())];
-    Outcome outcome{{step, begin}, StopReason::budget_used};
-    if (begin > step->cycles_to_end) {
-        outcome = execute<false>(x, memory, code, outcome.at);
-    }
-    if (outcome.reason == StopReason::budget_used) {
-        outcome = execute<true>(x, memory, code, outcome.at);
-    }
+    Position const at{step, begin, step};
+    Outcome const outcome = code.cache_miss > 0 ? execute_until<true>(x, memory, core.cache, code, at)
+                                                : execute_until<false>(x, memory, core.cache, code, at);
 
     std::copy_n(x.begin(), core.x.size(), core.x.begin());
     core.pc = address_of(outcome.at.step, code);
@@ -440,14 +488,17 @@ Stop run_instructions(Core& core, Memory& memory, Code const& code, std::uint64_
 
 /// Executes the instruction at pc, which accesses a control and status register.
 void access_register(Core& core, Code const& code) {
-    Step const& step = *step_at(core.pc, code);
+    Step const& step = *code.step_at(core.pc);
     auto const index = static_cast<std::size_t>(&step - code.steps.data());
     std::uint32_t const value = read_register(as_unsigned(step.immediate), core.cycles);
     if (step.rd != kUnread) {
         core.x[step.rd] = value;
     }
-    core.pc += 4;
     core.cycles += code.cycles_before[index + 1] - code.cycles_before[index];
+    if (code.cache_miss > 0 && core.cache.fetches(cache_line(core.pc))) {
+        core.cycles += code.cache_miss;
+    }
+    core.pc += 4;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "riscv/code.hpp"
+#include "riscv/instruction_cache.hpp"
 #include "riscv/memory_image.hpp"
 
 namespace pogosim {
@@ -16,6 +17,7 @@ struct Core {
     std::array<std::uint32_t, 32> x{};  // x[0] is 0 to programs, whatever is written here
     std::uint32_t pc = 0;               // address of the next instruction
     std::uint64_t cycles = 0;           // that have passed since the core began
+    InstructionCache cache{};
 
     bool operator==(Core const&) const = default;
 };

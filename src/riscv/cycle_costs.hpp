@@ -7,14 +7,13 @@
 // Sources: the configuration of "Lite" is the line of VexRiscv_Lite.v in the Makefile of
 // litex-hub/pythondata-cpu-vexriscv; cycles are from the section "Plugins" of SpinalHDL/VexRiscv's README. What is
 // marked as an estimate is ours, from the pipeline as the README describes it, and has not been measured on a robot.
-// There is no model of cache misses (a line of 8 words) or of the slow flash: code is taken to be in the instruction
-// cache.
+// What a robot reads from its flash takes no longer than what it reads from its memory.
 #pragma once
 
 namespace pogosim {
 
-/// Cycles, at least 1 each but for shift_further_bit. "1 +" is the cycle that each instruction takes in a full
-/// pipeline.
+/// Cycles, at least 1 each but for shift_further_bit and cache_miss. "1 +" is the cycle that each instruction takes in
+/// a full pipeline.
 struct CycleCosts {
     int alu = 1;                // addition, comparison, logic, lui, auipc, fence
     int shift = 1;              // by 0 bits or 1
@@ -30,6 +29,9 @@ struct CycleCosts {
     int branch_predicted_taken = 2;      // BranchPlugin: 1 + 1
     int branch_predicted_not_taken = 1;  // BranchPlugin: 1
     int branch_mispredicted = 4;         // 1 + 3, an estimate, as jalr
+
+    // Estimate: 8 words at 2 cycles each on the Wishbone bus, and 2 to begin. May be 0: all code is in the cache.
+    int cache_miss = 18;  // fetching a line of code into the instruction cache, see instruction_cache.hpp
 
     friend bool operator==(CycleCosts const&, CycleCosts const&) = default;
 };

@@ -102,7 +102,7 @@ def test_costs_are_those_of_the_functions_that_the_main_loop_calls(measured: tup
     assert costs["user_step"]["library_us"] == pytest.approx(5.0)  # led_us
     assert costs["speak"]["library_us"] == pytest.approx(50 + 10 * (3 + 1 + 6))  # message_us, and message_byte_us
     assert costs["hear"]["library_us"] == 0
-    assert costs[MAIN_LOOP]["cycles"] < 10_000
+    assert costs[MAIN_LOOP]["cycles"] < 11_000
 
 
 def test_program_in_c_ticks_as_often_as_its_firmware(measured: tuple[Path, Path], tmp_path: Path) -> None:

@@ -238,6 +238,16 @@ def test_routines_bring_advice(routine: str, source: str, said: str, read: Read,
     assert " in `step`: 40 % of the tick" in without_source.text
 
 
+def test_code_that_does_not_fit_into_the_cache_brings_advice(read: Read) -> None:
+    values = raw_profile({("step",): (1000.0, 0.0, 1.0)})
+    assert advice_of(read(values), Sources([])) == []  # a profile of before says nothing of misses
+    values["ticks"][0]["miss_cycles"] = 190
+    assert advice_of(read(values), Sources([])) == []
+    values["ticks"][0]["miss_cycles"] = 360
+    (advice,) = advice_of(read(values), Sources([]))
+    assert advice.text.startswith("waiting for code that is not in the instruction cache: 36 % of the tick; the code")
+
+
 @pytest.mark.parametrize(("cycles", "count"), [(49, 0), (50, 1)])
 def test_advice_is_for_large_shares(cycles: float, count: int, read: Read) -> None:
     stacks = {("step",): (1000 - cycles, 0.0, 1.0), ("step", "sqrt"): (cycles, 0.0, 9.0)}
@@ -313,7 +323,8 @@ def test_report_has_everything(capsys: pytest.CaptureFixture[str]) -> None:
     one_line = " ".join(out.split())
     assert "firmware.elf: 10 ticks of 1 robot, 60 ticks per second: a budget of 350000 cycles for each." in one_line
     assert "A tick takes 29 % of it on average (102100 cycles)" in one_line
-    assert "Functions of the robots' library take 2.1 % of this time." in one_line
+    assert "Functions of the robots' library take 2.1 % of this time, and waiting for code that is not in" in one_line
+    assert "in the instruction cache 0 %." in one_line
     rows = {line.split()[0]: line.split() for line in out.splitlines() if line.startswith("  ")}
     assert rows["sqrt"] == ["sqrt", "double", "10", "3500", "user_step"]  # the last table that names it
     assert rows["user_step"] == ["user_step", "38000", "37", "%", "100100", "98", "%", "1"]

@@ -45,14 +45,20 @@ TEST(RiscvCycles, LoopTakesWhatItsInstructionsDo) {
         Robot robot(loop(static_cast<std::int32_t>(n), {}));
         EXPECT_EQ(robot.run().reason, StopReason::ecall);
         // All branches but the last go back, as predicted.
-        EXPECT_EQ(robot.core.cycles,
-                  costs.alu + n * costs.alu + (n - 1) * costs.branch_predicted_taken + costs.branch_mispredicted);
+        EXPECT_EQ(robot.core.cycles, costs.cache_miss + costs.alu + n * costs.alu +
+                                         (n - 1) * costs.branch_predicted_taken + costs.branch_mispredicted);
     }
 }
 
 TEST(RiscvCycles, EachKindOfInstructionHasItsCost) {
-    CycleCosts const costs{
-        .alu = 2, .shift = 3, .shift_further_bit = 5, .load = 7, .store = 11, .multiply = 13, .divide = 17};
+    CycleCosts const costs{.alu = 2,
+                           .shift = 3,
+                           .shift_further_bit = 5,
+                           .load = 7,
+                           .store = 11,
+                           .multiply = 13,
+                           .divide = 17,
+                           .cache_miss = 0};
     constexpr std::uint32_t kTimes = 100;
     auto const cycles_of = [&](std::vector<std::uint32_t> const& body) {
         Robot robot(loop(kTimes, body), costs);
@@ -152,7 +158,7 @@ TEST(RiscvCore, StopSaysWhyAndWhere) {
         MemoryImage image;
         std::ranges::copy(bytes_of({encode(addi, {.rd = 8, .immediate = 1}), expected.word}), image.bytes.begin());
         image.flash.resize(16);
-        Code const code = decode_code(0, std::span(image.bytes).first(8));
+        Code const code = decode_code(0, std::span(image.bytes).first(8), kOneCycleEach);
         Memory memory(std::make_shared<MemoryImage const>(std::move(image)));
         Core core;
         core.x[5] = kFlash;
@@ -179,7 +185,7 @@ TEST(RiscvCore, BranchOutsideIsAMistakeOnlyIfItIsTaken) {
 }
 
 TEST(RiscvCore, CodeHasAnEndAndABeginning) {
-    Robot robot({encode(fence), encode(fence)});
+    Robot robot({encode(fence), encode(fence)}, kOneCycleEach);
     EXPECT_EQ(robot.run(), (Stop{StopReason::jump_outside, 8, 8}));
     EXPECT_EQ(robot.core.cycles, 2U);
     EXPECT_EQ(robot.run(), (Stop{StopReason::jump_outside, 8, 8}));
@@ -204,7 +210,7 @@ TEST(RiscvCore, StopsAtInterceptedFunctionsEachTime) {
     // Calls the function at 16 twice, which would be an ebreak.
     auto const bytes = bytes_of({encode(jal, {.rd = 1, .immediate = 16}), encode(jal, {.rd = 1, .immediate = 12}),
                                  encode(ecall), encode(ebreak), encode(ebreak)});
-    Code code = decode_code(0, bytes);
+    Code code = decode_code(0, bytes, kOneCycleEach);
     EXPECT_TRUE(intercept(code, 16));
     EXPECT_FALSE(intercept(code, 20));
     EXPECT_FALSE(intercept(code, 17));
@@ -222,7 +228,7 @@ TEST(RiscvCore, StopsAtInterceptedFunctionsEachTime) {
     EXPECT_EQ(stop, (Stop{StopReason::ecall, 8, 0}));
     EXPECT_EQ(calls, 2);
     EXPECT_EQ(core.x[10], 10U);
-    EXPECT_EQ(core.cycles, 4U);
+    EXPECT_EQ(core.cycles, 2U);
 }
 
 TEST(RiscvCore, RobotsOnTwoThreadsDoWhatOneAloneDoes) {
@@ -250,7 +256,8 @@ TEST(RiscvCore, ReadsItsCounterOfCyclesAndNoOtherRegister) {
     constexpr std::uint32_t read_upper_half = 0xb80025f3;       // csrr a1, mcycleh
     constexpr std::uint32_t set_interrupt_mask = 0xbc02a673;    // csrrs a2, 0xbc0, t0: VexRiscv's
     constexpr std::uint32_t write_without_result = 0x30529073;  // csrw mtvec, t0
-    Robot robot({write_without_result, set_interrupt_mask, read_cycle, read_upper_half, encode(Operation::ebreak)});
+    Robot robot({write_without_result, set_interrupt_mask, read_cycle, read_upper_half, encode(Operation::ebreak)},
+                kOneCycleEach);
     robot.core.x[5] = robot.core.x[12] = 7;
     robot.core.cycles = (std::uint64_t{3} << 32) + 100;
     EXPECT_EQ(robot.run(), (Stop{StopReason::ebreak, 16, 0}));
@@ -262,7 +269,7 @@ TEST(RiscvCore, ReadsItsCounterOfCyclesAndNoOtherRegister) {
 }
 
 TEST(RiscvCore, EndsBeforeAnAccessForWhichNoCycleIsLeft) {
-    Robot robot({0xc0002573, 0xc0002573});
+    Robot robot({0xc0002573, 0xc0002573}, kOneCycleEach);
     EXPECT_EQ(robot.run(1), (Stop{StopReason::budget_used, 4, 0}));
     EXPECT_EQ(robot.core.cycles, 1U);
 }

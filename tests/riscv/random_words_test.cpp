@@ -1,6 +1,9 @@
 // Random words as programs: none does harm, each stop has its reason, and the reference agrees on what happened.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+
 #include "riscv/reference_core.hpp"
 #include "riscv/robot.hpp"
 
@@ -17,7 +20,8 @@ constexpr std::uint32_t kLast = static_cast<std::uint32_t>(std::size(kEncodings)
 
 class Generator {
 public:
-    explicit Generator(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15U + 1) {}
+    /// Jumps and branches go up to `reach` words back, and nearly as far on.
+    explicit Generator(std::uint64_t seed, int reach = 32) : state_(seed * 0x9e3779b97f4a7c15U + 1), reach_(reach) {}
 
     std::uint32_t next() {  // xorshift64*, G. Marsaglia and S. Vigna
         state_ ^= state_ >> 12;
@@ -28,7 +32,7 @@ public:
 
     std::uint32_t below(std::uint32_t end) { return next() % end; }
 
-    /// One word in eight is any; the others are instructions, with near jumps and few registers.
+    /// One word in eight is any; the others are instructions, with few registers.
     std::uint32_t word() {
         if (below(8) == 0) {
             return next();
@@ -38,25 +42,26 @@ public:
         auto const number = static_cast<std::int32_t>(next());
         return encode(
             encoding,
-            {.rd = below(8), .rs1 = below(8), .rs2 = below(8), .immediate = is_jump ? number % 32 * 4 : number});
+            {.rd = below(8), .rs1 = below(8), .rs2 = below(8), .immediate = is_jump ? number % reach_ * 4 : number});
     }
 
 private:
     std::uint64_t state_;
+    int reach_;
 };
 
-std::vector<std::uint32_t> random_words(Generator& random) {
-    std::vector<std::uint32_t> words(kWords);
+std::vector<std::uint32_t> random_words(Generator& random, std::uint32_t count = kWords) {
+    std::vector<std::uint32_t> words(count);
     std::ranges::generate(words, [&] { return random.word(); });
     return words;
 }
 
 /// Something else for a robot that cannot go on: other registers, another place.
-void restart(Core& core, Generator& random) {
+void restart(Core& core, Generator& random, std::uint32_t words = kWords) {
     for (std::uint32_t i = 1; i < 8; ++i) {
         core.x[i] = random.below(4) == 0 ? random.next() : random.below(kBytes);
     }
-    core.pc = 4 * random.below(kWords);
+    core.pc = 4 * random.below(words);
 }
 
 /// Why a step cannot be executed, from its word.
@@ -155,6 +160,49 @@ TEST(RiscvRandomWords, DoWhatTheReferenceDoes) {
                                        [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); }))
             << "program " << program;
     }
+}
+
+/// The number of the line that each place of the instruction cache holds, -1: none.
+using PlainCache = std::array<std::int64_t, 64>;
+
+bool misses(PlainCache& cache, std::uint32_t address) {
+    std::int64_t const line = address / 32;
+    std::int64_t& place = cache[address / 32 % 64];
+    return std::exchange(place, line) != line;
+}
+
+TEST(RiscvRandomWords, MissTheCacheWhereTheReferenceDoes) {
+    constexpr std::uint32_t kFarWords = 4096;  // 16 KiB of code, eight times what the cache holds
+    constexpr std::int64_t kMiss = 7;
+    CycleCosts costs = kOneCycleEach;
+    costs.cache_miss = kMiss;
+    std::uint64_t all_misses = 0;
+    for (int program = 0; program < 100; ++program) {
+        Generator random(static_cast<std::uint64_t>(program), 1024);
+        Robot robot(random_words(random, kFarWords), costs, 2 * 4 * kFarWords);
+        ReferenceCore reference{.x = {}, .pc = 0, .memory = {}, .code_bytes = 4 * kFarWords};
+        for (std::byte const byte : robot.image->bytes) {
+            reference.memory.push_back(std::to_integer<std::uint8_t>(byte));
+        }
+        PlainCache cache;
+        cache.fill(-1);
+        for (int attempt = 0; attempt < 1000; ++attempt) {
+            restart(robot.core, random, kFarWords);
+            reference.x = robot.core.x;
+            reference.pc = robot.core.pc;
+            auto const end = static_cast<std::int64_t>(robot.core.cycles + random.below(2000));
+            reference.cycles = static_cast<std::int64_t>(robot.core.cycles);
+            for (std::uint32_t pc = reference.pc; reference.cycles < end && reference.step(); pc = reference.pc) {
+                reference.cycles += 1 + (misses(cache, pc) ? kMiss : 0);
+            }
+            robot.run(static_cast<std::uint64_t>(end) - robot.core.cycles);
+            ASSERT_EQ(robot.core.cycles, static_cast<std::uint64_t>(reference.cycles)) << "program " << program;
+            ASSERT_EQ(robot.core.pc, reference.pc) << "program " << program;
+            ASSERT_EQ(robot.core.x, reference.x) << "program " << program;
+        }
+        all_misses += robot.core.cache.misses;
+    }
+    EXPECT_GT(all_misses, 50'000U);
 }
 
 }  // namespace

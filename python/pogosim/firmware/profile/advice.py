@@ -21,6 +21,7 @@ from pogosim.firmware.profile.routines import Family, family_of, name_in_source,
 from pogosim.firmware.profile.sources import Sources, shown_place
 
 LEAST_SHARE = 0.05  # of the tick, for advice
+LEAST_SHARE_OF_MISSES = 0.2  # less is usual
 CYCLES_OF_DIVISION = 10.0  # per instruction, from which a line waits for divisions or multiplications
 POWER_OF_TWO = re.compile(r"[/%]\s*(\d+)[uUlL]*\b(?!\s*[.eE]|\.)")
 
@@ -83,7 +84,7 @@ RULES: dict[Family, Callable[[Sequence[str]], str]] = {
 
 def advice_of(profile: Profile, sources: Sources) -> list[Advice]:
     """Return what to change: first a tick over its budget, then what takes at least 5 % of it, largest share first."""
-    found = [*of_routines(profile, sources), *of_divisions(profile, sources)]
+    found = [*of_routines(profile, sources), *of_divisions(profile, sources), *of_misses(profile)]
     return [*of_budget(profile), *sorted(found, key=lambda one: -one.share)]
 
 
@@ -99,6 +100,19 @@ def of_budget(profile: Profile) -> list[Advice]:
         f"({ticks_per_second(profile)}), or spread the work over several ticks"
     )
     return [Advice(load.worst / budget, text)]
+
+
+def of_misses(profile: Profile) -> list[Advice]:
+    """Return what to do about code that is too large for the instruction cache."""
+    share = load_of(profile).share_of_misses
+    if share < LEAST_SHARE_OF_MISSES:
+        return []
+    text = (
+        f"waiting for code that is not in the instruction cache: {percent(share)} of the tick; the code that runs "
+        "again and again is larger than its 2 KiB: do one thing for all neighbours and then the next, rather than "
+        "all for each, and call fewer large routines (those of double, printf) in a loop"
+    )
+    return [Advice(share, text)]
 
 
 def of_routines(profile: Profile, sources: Sources) -> list[Advice]:

@@ -21,6 +21,7 @@ class Load:
         worst: That of the tick which takes most; the first one, if several do.
         worst_tick: This tick.
         share_of_calls: Share of the time that is in functions of the robots' library, 0 to 1.
+        share_of_misses: Share in which the processor waits for code that is not in its instruction cache, 0 to 1.
         share_over_budget: Share of the ticks that take more than their budget, 0 to 1; 0 without a main loop.
     """
 
@@ -29,6 +30,7 @@ class Load:
     worst: float
     worst_tick: Tick
     share_of_calls: float
+    share_of_misses: float
     share_over_budget: float
 
 
@@ -51,5 +53,6 @@ def load_of(profile: Profile) -> Load:
         worst=worst,
         worst_tick=profile.ticks[costs.index(worst)],
         share_of_calls=of_calls / total if total > 0 else 0.0,
+        share_of_misses=sum(tick.miss_cycles for tick in profile.ticks) / total if total > 0 else 0.0,
         share_over_budget=0.0 if budget is None else sum(cost > budget for cost in costs) / len(costs),
     )

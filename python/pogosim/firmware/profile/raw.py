@@ -8,7 +8,8 @@
       "program_bytes": 13040, "variable_bytes": 64,                 code and constants; data and bss
       "deepest_stack_bytes": 712, "heap_bytes": 0,
       "robots": [{"id": 0, "category": "robots"}],                  those that were profiled
-      "ticks": [{"robot": 0, "tick": 0, "begin_s": 0.0, "cycles": 12345, "call_us": 31.5}],
+      "ticks": [{"robot": 0, "tick": 0, "begin_s": 0.0, "cycles": 12345, "miss_cycles": 180,
+                 "call_us": 31.5}],
       "functions": ["main", "user_step", "__muldf3"],               the numbers below are places in this list
       "lines": [{"function": 1, "file": "main.c", "line": 84, "cycles": 5000, "instructions": 900}],
       "stacks": [{"frames": [0, 1, 2], "cycles": 3000, "call_us": 0.0, "calls": 12}],
@@ -16,11 +17,12 @@
     }
 
 - `ticks` has one entry per finished tick of a profiled robot; `call_us` is time in functions of the robots' library,
-  which comes on top of the cycles.
+  which comes on top of the cycles. `miss_cycles` are those of the cycles in which the processor waits for code that is
+  not in its instruction cache; without the key, none.
 - `lines` and `stacks` cover the same ticks. The file of a line is "" where it is not known. Frames of a stack go from
   the outermost function to the innermost one, whose own cycles and time these are; `calls` counts how often it was
   called along this path.
-- `spans` are calls of the first ticks in the order of time, for a trace.
+- `spans` are calls of the first ticks, for a trace: in each step of the run, robot by robot.
 - Cycles are counted as the processor does, before `cycle_factor`, by which the simulator multiplies them. Reading does
   it once: everything in a Profile is in cycles of the clock. Further keys are allowed, and ignored.
 """
@@ -64,6 +66,7 @@ class Tick:
         begin_s: When it began, s of simulated time.
         cycles: Cycles of the clock that its code took, 0 or more.
         call_us: Time in functions of the robots' library, besides, us.
+        miss_cycles: Those of the cycles in which it waited for code that was not in the instruction cache.
     """
 
     robot: int
@@ -71,6 +74,7 @@ class Tick:
     begin_s: float
     cycles: float
     call_us: float
+    miss_cycles: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -314,6 +318,7 @@ def read_tick(entry: Entry, factor: float) -> Tick:
         entry.number("begin_s"),
         factor * entry.number("cycles"),
         entry.number("call_us"),
+        factor * entry.number("miss_cycles") if "miss_cycles" in entry.values else 0.0,
     )
 
 

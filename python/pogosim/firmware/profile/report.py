@@ -56,7 +56,10 @@ def load_lines(profile: Profile) -> list[str]:
             f"take at most {percent(load.percentile / budget)}, and the worst one, {worst}, "
             f"{percent(load.worst / budget)}."
         )
-    text += f" Functions of the robots' library take {percent(load.share_of_calls)} of this time."
+    text += (
+        f" Functions of the robots' library take {percent(load.share_of_calls)} of this time, and waiting for code "
+        f"that is not in the instruction cache {percent(load.share_of_misses)}."
+    )
     in_ticks = load.mean * len(profile.ticks)
     if abs(total_cycles(profile) - in_ticks) > SLACK * in_ticks:
         text += f" The tables hold {plain(total_cycles(profile))} cycles, and the ticks {plain(in_ticks)}."
