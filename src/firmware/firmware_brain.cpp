@@ -43,9 +43,8 @@ struct Failed : std::exception {
 
 /// Whether a function of the library is at an address.
 bool is_call_of_library(Code const& code, std::uint32_t address) {
-    std::uint32_t const offset = address - code.address;
-    return offset < code.bytes() && code.steps[offset / 4].operation == Operation::intercepted &&
-           intercepted_number(code, address) >= 0;
+    Step const* const step = code.step_at(address);
+    return step != nullptr && step->operation == Operation::intercepted && intercepted_number(code, address) >= 0;
 }
 
 bool same_slip(Slip const& a, Slip const& b) {
@@ -100,7 +99,8 @@ void FirmwareBrain::warn_of_endless_ticks() const {
     for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
         FirmwareRobot const& self = this->robot(robot);
         std::int64_t const since_us = time_us(world_) - self.went_on_us;
-        bool const is_in_tick = program_->loop_timer && !self.is_ending_tick && !self.has_ended;
+        bool const is_in_tick =
+            program_->loop_timer && is_alive(world_, robot) && !self.is_ending_tick && !self.has_ended;
         bool const sleeps = world_.devices.clock_us[robot] - time_us(world_) > soon_us;
         if (is_in_tick && since_us > (sleeps ? longest_sleep_us : long_us) && count++ == 0) {
             first = fmt::format("robot #{} of category '{}' has been in {} for {:.1f} s, in {}, and {} has not ended",
@@ -159,14 +159,18 @@ void FirmwareBrain::fill_row(std::uint32_t robot, std::span<CellValue> cells) co
     }
 }
 
-/// What the last tick has taken, without the time of library functions.
+/// What the last tick has taken, without the time of library functions. There are no ticks without a main loop.
 std::string FirmwareBrain::load_text(FirmwareRobot const& self) const {
+    if (!program_->loop_timer) {
+        return "no main loop";
+    }
     ProcessorSpec const& processor = spec_.model.processor;
     double const taken_us = processor.us_of(static_cast<double>(self.tick_cycles));
     int const hz = loop_hz_of(self);
     constexpr double us_per_s = 1e6;
     std::string const cycles = fmt::format("{} cycles in the last tick", self.tick_cycles);
-    return hz == 0 ? cycles : fmt::format("{:.2g} %, {}", 100.0 * taken_us * hz / us_per_s, cycles);
+    double const percent = 100.0 * taken_us * hz / us_per_s;
+    return hz == 0 ? cycles : fmt::format("{:.{}f} %, {}", percent, percent < 9.95 ? 1 : 0, cycles);
 }
 
 /// main_loop_hz of a robot; the usual value if the compiler has left that out because it never changes.
@@ -239,6 +243,7 @@ void FirmwareBrain::restart(std::uint32_t robot) {
     anew.printed = std::move(self.printed);
     self = std::move(anew);
     reset_devices(world_, robot, step_us_);
+    self.went_on_us = step_us_;
     if (is_observed(robot)) {
         services_.observer->note_start(robot);
     }
@@ -265,7 +270,7 @@ void FirmwareBrain::run_robot(std::uint32_t robot, Part& part) {
                       .times = spec_.model.processor.calls};
     try {
         go_on(call);
-        if (restarts && !self.is_starting && !is_ahead(call)) {
+        if (restarts && !self.is_starting && !self.has_ended && !is_ahead(call)) {
             go_on(call);  // its first tick
         }
     } catch (WrongAddress const& wrong) {
@@ -372,7 +377,7 @@ void FirmwareBrain::go_on(FirmwareCall& call) const {
             self.has_ended = true;
             goes_on = false;
         } else {
-            throw Failed(failure_of(call, text_of(stop, self)));
+            throw Failed(failure_of(call, text_of(stop, self, program_->firmware)));
         }
     }
 }
@@ -484,7 +489,7 @@ void FirmwareBrain::join(Part& part) {
 
 /// Where a robot is: a call of the library is where its caller is.
 std::string FirmwareBrain::place_of(FirmwareRobot const& self) const {
-    bool const is_in_call = is_call_of_library(program_->firmware.code, self.core.pc);
+    bool const is_in_call = is_call_of_library(program_->firmware.code, self.core.pc) || is_without_code(self);
     return place_in_firmware(*program_, is_in_call ? self.core.x[kReturnAddress] - 4 : self.core.pc);
 }
 

@@ -28,8 +28,7 @@ void FirmwareCall::read(std::uint32_t address, std::span<std::byte> bytes) const
 }
 
 void FirmwareCall::write(std::uint32_t address, std::span<std::byte const> bytes) const {
-    Code const& code = program.firmware.code;
-    if (address - code.address < code.bytes() && !bytes.empty()) {
+    if (program.firmware.code.overlaps(address, bytes.size())) {
         throw WrongAddress{function, address, "where its program is: it is NULL or wrong"};
     }
     if (Memory::Copied const copied = self.memory.write(address, bytes); copied.fault != AccessFault::none) {

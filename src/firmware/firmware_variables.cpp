@@ -67,7 +67,11 @@ std::optional<std::size_t> index_in(std::string_view part) {
     std::size_t index = 0;
     char const* const end = part.data() + part.size() - 1;
     bool const is_closed = part.size() > 2 && part.back() == ']';
-    return is_closed && std::from_chars(part.data() + 1, end, index).ptr == end ? std::optional(index) : std::nullopt;
+    if (!is_closed) {
+        return std::nullopt;
+    }
+    auto const [read_to, error] = std::from_chars(part.data() + 1, end, index);
+    return error == std::errc() && read_to == end ? std::optional(index) : std::nullopt;
 }
 
 /// What is at `path`, such as ".pose[1].x", in a variable. `why`: why there is nothing, if that can be said.

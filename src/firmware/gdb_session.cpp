@@ -61,10 +61,6 @@ bool is_store(Operation operation) {
     return operation == Operation::sb || operation == Operation::sh || operation == Operation::sw;
 }
 
-bool is_in_code(Code const& code, std::uint32_t address) {
-    return address - code.address < code.bytes();
-}
-
 std::string_view trimmed(std::string_view text) {
     constexpr auto kBlanks = " \t\r\n";
     std::size_t const first = text.find_first_not_of(kBlanks);
@@ -186,7 +182,7 @@ void GdbSession::note_progress() {
 bool GdbSession::is_shown(Stop const& fault) {
     GdbSignal const signal = signal_of(fault.reason);
     bool const is_return_to_gdb = fault.reason == StopReason::jump_outside && fault.address != fault.pc &&
-                                  !is_in_code(*code_, fault.address) && has_breakpoint(fault.address);
+                                  !code_->overlaps(fault.address, 1) && has_breakpoint(fault.address);
     if (is_return_to_gdb) {
         core_->pc = fault.address;  // the function that it has called returns to a breakpoint on the stack
         return true;
@@ -219,12 +215,12 @@ void GdbSession::show_failure(Core& core, Memory& memory, Code const& code) {
 
 /// A watchpoint for reading that the instruction at pc meets: by its addresses, whatever the values.
 std::optional<GdbPoint> GdbSession::touched_point() const {
-    std::uint32_t const offset = core_->pc - code_->address;
-    if (watched_.empty() || offset % 4 != 0 || offset >= code_->bytes()) {
+    Step const* const found = code_->step_at(core_->pc);
+    std::uint64_t const bytes = found != nullptr ? accessed_bytes(found->operation) : 0;
+    if (watched_.empty() || bytes == 0) {
         return std::nullopt;
     }
-    Step const& step = code_->steps[offset / 4];
-    std::uint64_t const bytes = accessed_bytes(step.operation);
+    Step const& step = *found;
     std::uint32_t const base = step.rs1 == 0 ? 0 : core_->x[step.rs1 % core_->x.size()];
     std::uint32_t const address = base + static_cast<std::uint32_t>(step.immediate);
     for (Watched const& watched : watched_) {
@@ -318,7 +314,9 @@ void GdbSession::forget_peer() {
     code_with_breakpoints_.reset();
     how_ = {};
     is_stopped_ = false;
-    log().info("robot #{}: gdb has left, and the run goes on; it may connect again", robot_.id);
+    if (!ends_run_ && !robot_.interrupted()) {
+        log().info("robot #{}: gdb has left, and the run goes on; it may connect again", robot_.id);
+    }
 }
 
 /// Bytes of gdb. While the robot runs, only Ctrl-C is expected.
@@ -402,9 +400,7 @@ void GdbSession::show_library_as_returns(std::uint32_t address, std::span<std::b
 
 /// Not to code, which has been decoded: what gdb would see there is not what runs.
 bool GdbSession::write_memory(std::uint32_t address, std::span<std::byte const> bytes) {
-    bool const is_code = address < std::uint64_t{code_->address} + code_->bytes() &&
-                         code_->address < std::uint64_t{address} + bytes.size();
-    return !is_code && memory_->write(address, bytes).fault == AccessFault::none;
+    return !code_->overlaps(address, bytes.size()) && memory_->write(address, bytes).fault == AccessFault::none;
 }
 
 bool GdbSession::insert(GdbPoint const& point) {
@@ -446,7 +442,7 @@ void GdbSession::detach() {
 }
 
 void GdbSession::kill() {
-    is_leaving_ = true;
+    is_leaving_ = ends_run_ = true;
     robot_.end_run();
 }
 

@@ -126,6 +126,7 @@ private:
     bool owes_reply_ = false;            // gdb has resumed it, and waits until it stops
     bool is_interrupt_pending_ = false;  // Ctrl-C has come
     bool is_leaving_ = false;            // gdb has detached
+    bool ends_run_ = false;              // by its wish
     GdbStop stop_;                       // the last one
     GdbResume how_;                      // it goes on
 

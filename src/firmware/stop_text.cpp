@@ -22,16 +22,30 @@ std::string text_of_access(std::uint32_t address) {
     return fmt::format("it accessed 0x{:08x}, where there is no memory: a pointer is wrong", address);
 }
 
-std::string text_of_word(Stop const& stop, FirmwareRobot const& robot) {
+std::uint32_t word_at_pc(FirmwareRobot const& robot) {
     std::array<std::byte, 4> word{};
-    robot.memory.read(stop.pc, word);
+    robot.memory.read(robot.core.pc, word);
+    return read_little_endian<4>(word.data());
+}
+
+std::string text_of_word(FirmwareRobot const& robot, Firmware const& firmware) {
+    FirmwareSymbol const* const function = firmware.function_at(robot.core.pc);
+    if (is_without_code(robot) && function != nullptr) {
+        return function->name == "abort" ? "it called abort(), as assert() does when its condition is false"
+                                         : fmt::format("it called {}(), which is not simulated", function->name);
+    }
     return fmt::format("it got to 0x{:08x}, where 0x{:08x} is no instruction of the robot's processor (rv32im)",
-                       stop.pc, read_little_endian<4>(word.data()));
+                       robot.core.pc, word_at_pc(robot));
 }
 
 }  // namespace
 
-std::string text_of(Stop const& stop, FirmwareRobot const& robot) {
+bool is_without_code(FirmwareRobot const& robot) {
+    constexpr std::uint32_t unimp = 0xc0001073;
+    return word_at_pc(robot) == unimp;
+}
+
+std::string text_of(Stop const& stop, FirmwareRobot const& robot, Firmware const& firmware) {
     switch (stop.reason) {
         case StopReason::unaligned_access:
             return fmt::format("it accessed 0x{:08x}, which is no multiple of the size of what it expected there",
@@ -52,7 +66,7 @@ std::string text_of(Stop const& stop, FirmwareRobot const& robot) {
         case StopReason::ebreak:
             return "it executed ebreak, where programs give up";
         default:
-            return text_of_word(stop, robot);
+            return text_of_word(robot, firmware);
     }
 }
 

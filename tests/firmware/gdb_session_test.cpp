@@ -173,13 +173,23 @@ TEST(GdbSession, WatchpointsSeeWritesAndReads) {
     EXPECT_EQ(gdb.ask("c"), "T05thread:1;watch:400;");
     EXPECT_EQ(gdb.ask("m400,4"), "13000000");
     EXPECT_EQ(gdb.ask("z2,400,4"), "OK");
-    EXPECT_EQ(gdb.ask("Z3,402,1"), "OK");  // only written to
+    EXPECT_EQ(gdb.ask("Z3,400,1"), "OK");  // only written to
     EXPECT_EQ(gdb.ask("Z4,400,2"), "OK");
     EXPECT_EQ(gdb.ask("c"), "T05thread:1;awatch:400;");
     EXPECT_EQ(gdb.ask("p20"), "0c000000");
     EXPECT_EQ(gdb.ask("z4,400,2"), "OK");
     EXPECT_EQ(gdb.ask("c"), "W00");
     debugged.expect_same_end();
+}
+
+TEST(GdbSession, InstructionThatAccessesNothingMeetsNoWatchpoint) {
+    Debugged debugged;
+    Peer& gdb = debugged.gdb;
+    EXPECT_EQ(gdb.ask("Z4,800,8"), "OK");
+    EXPECT_EQ(gdb.ask("P5=03080000"), "OK");  // the address that addi at 16 computes is watched
+    EXPECT_EQ(gdb.ask("P20=10000000"), "OK");
+    EXPECT_EQ(gdb.ask("s"), "T05thread:1;");
+    EXPECT_EQ(gdb.ask("D"), "OK");
 }
 
 TEST(GdbSession, FaultIsShownAndCanBeMended) {

@@ -308,6 +308,7 @@ def test_variables_are_columns_by_name(tmp_path: Path) -> None:
         ("mydata.cuont", "the program has no such variable; did you mean 'mydata.count'?"),
         ("mydata.items", "is neither a number nor a text; name one of its parts"),
         ("mydata.items[2].id", "[2] is beyond its end: it has 2 elements"),
+        ("mydata.items[99999999999999999999999].id", "the program has no such variable"),
         ("absent", "the program has no such variable"),
     ],
 )
@@ -447,6 +448,8 @@ def failure(tmp_path: Path, step: str, globals_: str = "", settings: dict[str, o
             "it gave pogobot_imu_read() the",
         ),
         ("__builtin_trap();", "it executed ebreak, where programs give up"),
+        ("reboot(); mydata->count = 0;", "it called reboot(), which is not simulated"),
+        ("abort();", "it called abort(), as assert() does when its condition is false"),
         ('asm volatile(".word 0xffffffff");', "where 0xffffffff is no instruction of the robot's processor"),
     ],
 )
@@ -708,6 +711,44 @@ def test_tick_that_does_not_end_is_told_where_time_is_counted(tmp_path: Path) ->
         r"has not ended \(3 such robots\)",
         said,
     )
+
+
+def test_robot_between_two_ticks_is_in_none(tmp_path: Path) -> None:
+    """One whose battery is empty, and one that has restarted and waits in user_init."""
+    firmware = firmware_of(
+        tmp_path / "robot", text("", "msg_rx_fn = hear; msleep(1500);", "static void hear(message_t* m) { (void)m; }")
+    )
+    commands = """
+    message_t m = {{._packet_type = ir_t_cmd, ._emitting_power_list = 0xff, .payload_length = 8}, {0}};
+    if (pogobot_ticks == 200) { memcpy(m.payload, "DEADBEEF", 8); pogobot_infrared_sendRawLongMessage(&m); }"""
+    program = compile_text(tmp_path, text(commands).replace("user_step)", 'user_step, "remote")'))
+    common = {"type": "pogobot", "nb": 1, "y": 500, "geometry": "disk", "radius": 26.5}
+    empty = {"x": 800, "battery": {"capacity_mah": 1e-3}}
+    objects = {
+        "robots": common | {"x": 300, "brain": str(firmware)},
+        "empty": common | {"brain": str(firmware)} | empty,
+        "remote": common | {"x": 360},
+    }
+    result = run(program, tmp_path, {"objects": objects, "simulation_time": 4.5})
+    assert "the battery of robot #1 of category 'empty' is empty" in result.text
+    assert "has been in" not in result.text
+
+
+def test_program_that_ends_after_a_restart_stands_still(tmp_path: Path) -> None:
+    source = """#include "pogobot.h"
+    int main(void) {
+        pogobot_init();
+        for (int i = 0; i < 100; i++) { msleep(20); pogobot_infrared_update(); }
+        exit(0);
+    }"""
+    firmware = firmware_of(tmp_path / "robot", source)
+    commands = """
+    message_t m = {{._packet_type = ir_t_cmd, ._emitting_power_list = 0xff, .payload_length = 8}, {0}};
+    if (pogobot_ticks == 30) { memcpy(m.payload, "DEADBEEF", 8); pogobot_infrared_sendRawLongMessage(&m); }"""
+    program = compile_text(tmp_path, text(commands).replace("user_step)", 'user_step, "remote")'))
+    common = {"type": "pogobot", "nb": 1, "y": 500, "geometry": "disk", "radius": 26.5}
+    objects = {"robots": common | {"x": 300, "brain": str(firmware)}, "remote": common | {"x": 360}}
+    assert run(program, tmp_path, {"objects": objects, "simulation_time": 4.0}).code == 0
 
 
 def test_code_that_may_run_for_ever_can_be_interrupted(tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def parser(prog: str) -> Parser:
         metavar="X",
         type=finite,
         default=0.0,
-        help="by which share of their size numbers with a fraction may differ (default: %(default)s)",
+        help="by which share of their size, and this much, numbers with a fraction may differ (default: %(default)s)",
     )
     made.add_argument("--most", metavar="N", type=whole(1), default=20, help="variables to list (default: %(default)s)")
     return made
@@ -93,6 +93,8 @@ def compare(options: argparse.Namespace) -> int:
     from pogosim.firmware.comparing import Comparison  # takes a while
     from pogosim.simulation import SimulationError
 
+    if options.config is None and not options.program.is_dir():
+        raise FirmwareError("expected a configuration: -c CONFIG")
     configuration = options.config or options.program / "conf" / "test.yaml"
     settings = {} if options.seed is None else {"seed": options.seed}
     try:

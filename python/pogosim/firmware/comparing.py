@@ -58,7 +58,7 @@ def differing(program: npt.NDArray[Any], firmware: npt.NDArray[Any], tolerance: 
     Args:
         program: Shape (robots, ...).
         firmware: The same shape.
-        tolerance: By which share of their size floating-point numbers may differ, 0 or more.
+        tolerance: Floating-point numbers may differ by this share of their size, and by this much. 0 or more.
     """
     if program.shape != firmware.shape:
         return np.ones(len(program), dtype=bool)
@@ -193,7 +193,7 @@ class Comparison:
             self._program.time < until_s and len(self.found) < most and self._program.step() and self._firmware.step()
         ):
             self._look()
-        return sorted(self.found.values(), key=lambda difference: difference.time_s)
+        return sorted(self.found.values(), key=lambda difference: difference.time_s)[:most]
 
     def _user_data(self) -> tuple[npt.NDArray[Any] | None, npt.NDArray[Any] | None]:
         """Return USERDATA of the chosen robots in both runs; None if one of them has none, which is kept."""
