@@ -19,6 +19,9 @@ extern "C" {
 /// A run.
 typedef struct pogosim_run pogosim_run;
 
+/// A copy of the state of a run.
+typedef struct pogosim_state pogosim_state;
+
 /// As exit codes of a program. After anything but POGOSIM_OK and POGOSIM_OVER of a step, the run is over and its files
 /// are complete.
 enum pogosim_status {
@@ -176,6 +179,18 @@ uint64_t pogosim_run_hash(pogosim_run const* run);
 
 /// Brings the data file up to date.
 int pogosim_run_save(pogosim_run* run);
+
+/// Copies the state of a run between two steps: world, physics, random streams, and the program's variables and stacks.
+/// Fails for a run that writes a data file, a log of messages or pictures, whose rows would go back in time, for one
+/// that moves bodies with Box2D, and for a program that allocates memory or uses a library with a state of its own.
+/// `state` is NULL on failure.
+int pogosim_run_save_state(pogosim_run* run, pogosim_state** state);
+
+/// Goes on from a state of this run: what follows is what followed then. Arrays stay where they are.
+int pogosim_run_restore_state(pogosim_run* run, pogosim_state const* state);
+
+/// Gives the memory of a state back, also after pogosim_run_close().
+void pogosim_state_free(pogosim_state* state);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

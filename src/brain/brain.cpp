@@ -4,6 +4,25 @@
 
 namespace pogosim {
 
+namespace {
+
+struct SavedBytes final : SavedBrain {
+    std::vector<std::byte> bytes;
+};
+
+}  // namespace
+
+std::unique_ptr<SavedBrain> Brain::save() {
+    auto saved = std::make_unique<SavedBytes>();
+    append_state(saved->bytes);
+    return saved;
+}
+
+void Brain::restore(SavedBrain const& saved) {
+    std::span<std::byte const> bytes = static_cast<SavedBytes const&>(saved).bytes;
+    take_state(bytes);
+}
+
 RobotRange robots_of(World const& world, std::uint32_t category) {
     auto const& of_robots = world.robots.category;
     auto const first = std::ranges::lower_bound(of_robots, category);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "process/crash_handler.hpp"
@@ -28,6 +29,11 @@ struct RobotRange {
 
 /// The robots of a category.
 RobotRange robots_of(World const& world, std::uint32_t category);
+
+/// A copy of a brain's state, for Brain::restore().
+struct SavedBrain {
+    virtual ~SavedBrain() = default;
+};
 
 class Brain {
 public:
@@ -63,10 +69,19 @@ public:
     /// Why the last of these functions returned false.
     virtual std::optional<UserFailure> failure() const { return std::nullopt; }
 
-    /// Appends the brain's own state, which is not in the world: for hashes, and for restore(), which takes these bytes
-    /// from the front of `bytes`. The variables of a program are not saved.
-    virtual void save(std::vector<std::byte>& /*bytes*/) const {}
-    virtual void restore(std::span<std::byte const>& /*bytes*/) {}
+    /// Copies its own state, which is not in the world.
+    virtual std::unique_ptr<SavedBrain> save();
+
+    /// Goes on from a state of this brain.
+    virtual void restore(SavedBrain const& saved);
+
+    /// Why its state cannot be copied; empty: it can.
+    virtual std::string why_not_saved() const { return {}; }
+
+    /// Appends the state as bytes that are the same in every process, for hashes, and unless the brain saves itself
+    /// otherwise, for take_state(), which takes them from the front of `bytes`.
+    virtual void append_state(std::vector<std::byte>& /*bytes*/) const {}
+    virtual void take_state(std::span<std::byte const>& /*bytes*/) {}
 };
 
 /// All of a run. A program in C comes first, then others by their categories.

@@ -141,14 +141,14 @@ void HostBrain::visit_state(Self& brain, Visit const& visit) {
     visit(std::span(brain.received_bytes_.get(), brain.used_bytes_));
 }
 
-void HostBrain::save(std::vector<std::byte>& bytes) const {
+void HostBrain::append_state(std::vector<std::byte>& bytes) const {
     visit_state(*this, [&](auto const values) {
         auto const raw = std::as_bytes(values);
         bytes.insert(bytes.end(), raw.begin(), raw.end());
     });
 }
 
-void HostBrain::restore(std::span<std::byte const>& bytes) {
+void HostBrain::take_state(std::span<std::byte const>& bytes) {
     visit_state(*this, [&](auto const values) {
         std::memcpy(values.data(), bytes.data(), values.size_bytes());
         bytes = bytes.subspan(values.size_bytes());

@@ -58,8 +58,8 @@ public:
     HostBrain(World& world, std::string_view category, RobotRange robots);
 
     bool run_step() override;
-    void save(std::vector<std::byte>& bytes) const override;
-    void restore(std::span<std::byte const>& bytes) override;
+    void append_state(std::vector<std::byte>& bytes) const override;
+    void take_state(std::span<std::byte const>& bytes) override;
 
     std::string const& category() const { return category_; }
     RobotRange robots() const { return range_; }

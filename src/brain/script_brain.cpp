@@ -58,12 +58,12 @@ void ScriptBrain::carry_out(ScriptSpec::Entry const& entry, std::uint32_t robot)
     }
 }
 
-void ScriptBrain::save(std::vector<std::byte>& bytes) const {
+void ScriptBrain::append_state(std::vector<std::byte>& bytes) const {
     auto const raw = std::as_bytes(std::span(next_));
     bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
-void ScriptBrain::restore(std::span<std::byte const>& bytes) {
+void ScriptBrain::take_state(std::span<std::byte const>& bytes) {
     std::size_t const size = next_.size() * sizeof(next_[0]);
     std::memcpy(next_.data(), bytes.data(), size);
     bytes = bytes.subspan(size);

@@ -18,8 +18,8 @@ public:
     ScriptBrain(World& world, std::uint32_t category);
 
     bool run_step() override;
-    void save(std::vector<std::byte>& bytes) const override;
-    void restore(std::span<std::byte const>& bytes) override;
+    void append_state(std::vector<std::byte>& bytes) const override;
+    void take_state(std::span<std::byte const>& bytes) override;
 
 private:
     void tick(std::uint32_t robot);

@@ -501,13 +501,13 @@ UserFailure FirmwareBrain::failure_of(FirmwareCall const& call, std::string what
                              program_->ticks ? fmt::format(", tick {}", call.ticks()) : "")};
 }
 
-void FirmwareBrain::save(std::vector<std::byte>& bytes) const {
+void FirmwareBrain::append_state(std::vector<std::byte>& bytes) const {
     for (FirmwareRobot const& self : robots_) {
         save_robot(self, bytes);
     }
 }
 
-void FirmwareBrain::restore(std::span<std::byte const>& bytes) {
+void FirmwareBrain::take_state(std::span<std::byte const>& bytes) {
     for (std::uint32_t robot = range_.first; robot < range_.last; ++robot) {
         FirmwareRobot& self = robots_[robot - range_.first];
         self = new_robot(robot);

@@ -50,8 +50,8 @@ public:
     NamedTexts texts_of(std::uint32_t robot) const override;
     int highest_loop_hz() const override;
     std::optional<UserFailure> failure() const override { return failure_; }
-    void save(std::vector<std::byte>& bytes) const override;
-    void restore(std::span<std::byte const>& bytes) override;
+    void append_state(std::vector<std::byte>& bytes) const override;
+    void take_state(std::span<std::byte const>& bytes) override;
 
     RobotRange robots() const { return range_; }
     std::uint32_t category() const { return category_; }

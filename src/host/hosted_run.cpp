@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -45,6 +46,8 @@ Scenario scenario_of(pogosim_run_options const& options) {
     return scenario;
 }
 
+std::atomic<std::uint64_t> runs = 0;
+
 char letter_of(LogLine const& line) {
     constexpr std::string_view letters = "TDIWEC";
     return line.is_of_robot ? 'P' : letters.at(static_cast<std::size_t>(line.level));
@@ -62,7 +65,7 @@ pogosim::HostedProgram::~HostedProgram() {
     image_.reset();
 }
 
-pogosim_run::pogosim_run(pogosim_run_options const& options) {
+pogosim_run::pogosim_run(pogosim_run_options const& options) : number(++runs) {
     LogOptions logging;
     logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
     log_ = std::make_shared<Log>(logging);

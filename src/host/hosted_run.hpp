@@ -48,6 +48,7 @@ public:
     void end();
     bool is_over() const { return has_ended_ || has_failed_ || simulation_->is_over(); }
     bool has_failed() const { return has_failed_; }
+    bool has_ended() const { return has_ended_ || has_failed_; }
 
     pogosim::Simulation& simulation() { return *simulation_; }
     pogosim::Simulation const& simulation() const { return *simulation_; }
@@ -56,6 +57,7 @@ public:
     std::string const& columns() const { return columns_; }
     std::string const& take_messages();
 
+    std::uint64_t const number;  // no other run of this process has it
     pogosim::FairMutex mutable in_use;
 
 private:

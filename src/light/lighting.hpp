@@ -15,7 +15,7 @@ namespace pogosim {
 /// the light of the nearest image of each lamp.
 LightMap make_light_map(Arena const& arena, bool periodic, int columns, int rows);
 
-/// All lamps of a run. A step costs what changes: the cells that moving lamps light before and after it.
+/// All lamps of a run. Can be copied. A step costs what changes: the cells that moving lamps light before and after it.
 class Lighting {
 public:
     /// Only the arena and the cells of the map are read from the world. Lamp i has the setting world.lamps[i], or the
@@ -33,7 +33,7 @@ private:
     struct Entry {
         LampSpec spec;  // of the configuration
         std::size_t number = 0;
-        std::unique_ptr<Lamp> lamp;
+        std::shared_ptr<Lamp const> lamp;
         LampState shown{};
         LampSetting setting{};
     };

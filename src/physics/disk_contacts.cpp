@@ -60,7 +60,7 @@ void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32
 }
 
 void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls) {
-    walls_ = &walls;
+    walls_ = walls.sides();
     keep_impulses();
     near_.clear();
     with_fixed_.clear();
@@ -117,7 +117,7 @@ void DiskContacts::give_impulses() {
 std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const {
     std::uint32_t const fixed = near_[contact].b;
     if (contact >= first_wall_) {
-        return gap_to(walls_->side(fixed), point_mm);
+        return gap_to((*walls_)[fixed], point_mm);
     }
     if (polygons_.is_one(fixed)) {
         return polygons_.gap_to(world, fixed, point_mm);

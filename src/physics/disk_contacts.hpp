@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -53,7 +54,7 @@ class DiskContacts {
 public:
     DiskContacts(World const& world, WallSpec const& walls);
 
-    /// Builds the contacts from the neighbour lists. Keeps a reference to the walls.
+    /// Builds the contacts from the neighbour lists.
     void build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls);
 
     /// First pairs of movable disks, then disks with fixed bodies, then disks with walls.
@@ -103,7 +104,7 @@ private:
     std::vector<Pushing> pushing_;  // scratch, while near_ is rebuilt
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
-    WallNeighbourList const* walls_ = nullptr;
+    std::shared_ptr<WallSides const> walls_;
 };
 
 }  // namespace pogosim

@@ -132,6 +132,8 @@ public:
         return {.bodies_mm = 2.0F * kContactToleranceMm, .walls_mm = 2.0F * kContactToleranceMm};
     }
 
+    std::unique_ptr<PhysicsEngine> copy() const override { return std::make_unique<DiskEngine>(*this); }
+
 private:
     /// Islands do not interact, so results do not depend on which worker solves which island.
     void solve_islands(World& world, bool is_driven) {

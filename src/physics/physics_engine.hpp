@@ -27,7 +27,9 @@ struct TouchGaps {
 
 class PhysicsEngine {
 public:
+    PhysicsEngine() = default;
     virtual ~PhysicsEngine() = default;
+    PhysicsEngine& operator=(PhysicsEngine const&) = delete;
 
     /// Takes over what was written to the bodies of the world from outside, see world.hpp, imposes pending velocity
     /// commands, advances all bodies by one time step and writes their poses and velocities back. Bodies that overlap
@@ -37,6 +39,12 @@ public:
     virtual MotionLimits motion_limits() const = 0;
 
     virtual TouchGaps touch_gaps() const = 0;
+
+    /// A copy, which goes on as this one does with the world as it is now. Null: this engine cannot be copied.
+    virtual std::unique_ptr<PhysicsEngine> copy() const { return nullptr; }
+
+protected:
+    PhysicsEngine(PhysicsEngine const&) = default;
 };
 
 /// Stands for the fastest engine that can move what is in the world.

@@ -19,6 +19,21 @@ float distance(WallSide const& side, Vec2 point_mm) {
     return length(offset - t * side.along);
 }
 
+WallSides sides_of(WallIndex const& walls) {
+    WallSides sides;
+    for (WallEdge const& edge : walls.edges()) {
+        Vec2 const along = unit_vector(edge);
+        Vec2 const along_previous = unit_vector(walls.edges()[edge.previous]);
+        sides.push_back({.from_mm = edge.from,
+                         .along = along,
+                         .normal = {-along.y, along.x},
+                         .length_mm = length(edge.to - edge.from),
+                         .along_previous = along_previous,
+                         .has_corner = cross(along_previous, along) < 0.0F});
+    }
+    return sides;
+}
+
 }  // namespace
 
 std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm) {
@@ -38,25 +53,12 @@ std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm) {
     return far > 0.0F ? Gap{far, (1.0F / far) * offset} : Gap{0.0F, side.normal};
 }
 
-WallNeighbourList::WallNeighbourList(World const& world, WallIndex const& walls) {
-    if (world.periodic) {
-        return;
-    }
-    for (WallEdge const& edge : walls.edges()) {
-        Vec2 const along = unit_vector(edge);
-        Vec2 const along_previous = unit_vector(walls.edges()[edge.previous]);
-        sides_.push_back({.from_mm = edge.from,
-                          .along = along,
-                          .normal = {-along.y, along.x},
-                          .length_mm = length(edge.to - edge.from),
-                          .along_previous = along_previous,
-                          .has_corner = cross(along_previous, along) < 0.0F});
-    }
-}
+WallNeighbourList::WallNeighbourList(World const& world, WallIndex const& walls)
+    : sides_(std::make_shared<WallSides const>(world.periodic ? WallSides() : sides_of(walls))) {}
 
 void WallNeighbourList::build(World const& world, WallIndex const& walls, float skin_mm) {
     near_.clear();
-    if (sides_.empty()) {
+    if (sides_->empty()) {
         return;
     }
     Bodies const& bodies = world.bodies;
@@ -68,7 +70,7 @@ void WallNeighbourList::build(World const& world, WallIndex const& walls, float 
         Vec2 const place_mm = bodies.position_mm[body];
         found_.clear();
         walls.for_each_near(place_mm, reach_mm, [&](WallEdge const& edge) {
-            if (distance(sides_[edge.number], place_mm) < reach_mm &&
+            if (distance(side(edge.number), place_mm) < reach_mm &&
                 std::ranges::find(found_, edge.number) == found_.end()) {
                 found_.push_back(edge.number);
             }

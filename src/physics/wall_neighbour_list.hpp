@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,8 @@ struct Gap {
 /// is on one side of a thin wall cannot touch its other side.
 std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm);
 
+using WallSides = std::vector<WallSide>;
+
 class WallNeighbourList {
 public:
     WallNeighbourList(World const& world, WallIndex const& walls);
@@ -44,10 +47,13 @@ public:
     void build(World const& world, WallIndex const& walls, float skin_mm);
 
     std::span<NeighbourWall const> walls() const { return near_; }
-    WallSide const& side(std::uint32_t edge) const { return sides_[edge]; }
+    WallSide const& side(std::uint32_t edge) const { return (*sides_)[edge]; }
+
+    /// All of them, which stay as they are.
+    std::shared_ptr<WallSides const> const& sides() const { return sides_; }
 
 private:
-    std::vector<WallSide> sides_;
+    std::shared_ptr<WallSides const> sides_;
     std::vector<NeighbourWall> near_;
     std::vector<std::uint32_t> found_;  // of one body
 };

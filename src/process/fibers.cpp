@@ -10,11 +10,13 @@
 #include <boost/context/detail/fcontext.hpp>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "base/counted.hpp"
 #include "base/memory.hpp"
+#include "process/program_bytes.hpp"
 
 // A sanitizer needs to know which stack is in use. It may be in the user's program alone, so it is asked for here.
 extern "C" {
@@ -78,14 +80,14 @@ private:
 };
 
 /// The exceptions being handled, which the C++ runtime keeps for each thread.
-using HandledExceptions = std::array<std::byte, 2 * sizeof(void*)>;
+using HandledExceptions = std::array<void*, 2>;
 
 /// Replaces this thread's exceptions with those of the code that runs next.
 void swap_handled_exceptions(HandledExceptions& other) {
     void* const of_thread = abi::__cxa_get_globals();
     HandledExceptions before;
-    std::memcpy(before.data(), of_thread, before.size());
-    std::memcpy(of_thread, other.data(), other.size());
+    std::memcpy(before.data(), of_thread, sizeof(before));
+    std::memcpy(of_thread, other.data(), sizeof(other));
     other = before;
 }
 
@@ -112,6 +114,9 @@ public:
     void leave();
     void visit(void (*body)(void*), void* argument);
     void forget();
+    bool is_suspended() const { return !has_returned_; }
+    SavedFiber save();
+    void restore(SavedFiber const& saved);
     std::span<std::byte const> stack() const { return stack_.bytes(); }
 
 private:
@@ -251,6 +256,26 @@ void Fiber::forget() {
     }
 }
 
+/// The code on it is suspended.
+SavedFiber Fiber::save() {
+    auto const* const from = static_cast<std::byte const*>(inside_);
+    SavedFiber saved{
+        .fiber = this,
+        .goes_on_at = inside_,
+        .stack = std::vector<std::byte>(static_cast<std::size_t>(std::to_address(stack_.bytes().end()) - from)),
+        .exceptions = handled_};
+    copy_program_bytes(saved.stack.data(), from, saved.stack.size());
+    return saved;
+}
+
+void Fiber::restore(SavedFiber const& saved) {
+    reset();
+    inside_ = saved.goes_on_at;
+    copy_program_bytes(static_cast<std::byte*>(inside_), saved.stack.data(), saved.stack.size());
+    handled_ = saved.exceptions;
+    has_returned_ = false;
+}
+
 FiberPool::FiberPool(std::size_t stack_bytes) : stack_bytes_(stack_bytes) {}
 
 FiberPool::~FiberPool() = default;
@@ -283,6 +308,31 @@ void FiberPool::discard(Fiber& fiber) {
 void FiberPool::put_back(Fiber& fiber) {
     std::lock_guard const lock(mutex_);
     unused_.push_back(&fiber);
+}
+
+std::vector<SavedFiber> FiberPool::save() const {
+    std::lock_guard const lock(mutex_);
+    std::vector<SavedFiber> saved;
+    for (std::unique_ptr<Fiber> const& fiber : all_) {
+        if (fiber->is_suspended()) {
+            saved.push_back(fiber->save());
+        }
+    }
+    return saved;
+}
+
+void FiberPool::restore(std::vector<SavedFiber> const& saved) {
+    std::lock_guard const lock(mutex_);
+    unused_.clear();
+    for (std::unique_ptr<Fiber> const& fiber : all_) {
+        auto const found = std::ranges::find(saved, fiber.get(), &SavedFiber::fiber);
+        if (found != saved.end()) {
+            fiber->restore(*found);
+        } else {
+            fiber->reset();
+            unused_.push_back(fiber.get());
+        }
+    }
 }
 
 std::size_t FiberPool::deepest_bytes() const {

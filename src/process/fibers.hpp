@@ -7,6 +7,7 @@
 // Code that is never resumed is left as it is: its destructors do not run, and its stack is given back with the others.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,14 @@
 namespace pogosim {
 
 class Fiber;
+
+/// A copy of suspended code on a fiber.
+struct SavedFiber {
+    Fiber* fiber = nullptr;
+    void* goes_on_at = nullptr;       // of the context that Boost.Context keeps on the stack
+    std::vector<std::byte> stack;     // from there to its end
+    std::array<void*, 2> exceptions;  // that it is handling
+};
 
 /// Fibers that are used again and again. May be used by several threads.
 class FiberPool {
@@ -32,6 +41,13 @@ public:
 
     /// The same for a fiber whose suspended code is not to be resumed.
     void discard(Fiber& fiber);
+
+    /// Copies the stacks of all suspended code.
+    std::vector<SavedFiber> save() const;
+
+    /// Code that was suspended in `saved`, of this pool, is suspended there again; all other fibers are free. What the
+    /// frames point to has to be as it was. No code runs on any of them.
+    void restore(std::vector<SavedFiber> const& saved);
 
     /// How much of a stack code has used so far, at most, in whole pages; 0 where that is not known.
     std::size_t deepest_bytes() const;

@@ -145,9 +145,6 @@ public:
     /// From now on, warns of robots whose main_loop_hz is so high that they skip ticks.
     void watch_loop_rates();
 
-    /// Bytes of one robot's user data.
-    std::size_t user_data_bytes() const { return image_.user_data_bytes; }
-
     /// Set by SET_CALLBACK(), for the run as a whole; variables of each thread.
     struct Callbacks {
         void (*global_setup)() = nullptr;
@@ -158,6 +155,26 @@ public:
     };
     static Callbacks callbacks_of_thread();
     static void set_callbacks_of_thread(Callbacks const& callbacks);
+
+    /// What the program is on all robots between two steps.
+    struct Saved {
+        std::vector<Controller> controllers;
+        Controller system;
+        Callbacks callbacks;
+        std::vector<std::byte> user_data;
+        std::vector<std::byte> variables;  // of the program
+        std::optional<RobotMemory::Saved> own_memory;
+        std::vector<SavedFiber> fibers;
+        DataExport columns;
+        bool is_restart_due = false;
+        bool gave_user_data = false;
+    };
+    Saved save();
+    void restore(Saved const& saved);
+    std::string const& why_not_saved() const;
+
+    /// Bytes of one robot's user data.
+    std::size_t user_data_bytes() const { return image_.user_data_bytes; }
 
 private:
     void allocate_user_data();
@@ -222,7 +239,8 @@ private:
     std::int64_t next_look_us_ = 0;             // at calls that do not return
     std::vector<bool> is_warned_;               // of them, for each category
     std::vector<std::span<std::byte>> own_variables_;
-    std::unique_ptr<RobotMemory> own_memory_;  // copies: of each robot, and of the global step
+    mutable std::optional<std::string> why_not_saved_;  // once it has been asked for
+    std::unique_ptr<RobotMemory> own_memory_;           // copies: of each robot, and of the global step
     struct MainArguments {
         std::string name;
         std::array<char*, 2> values{};  // the program's name, and NULL

@@ -31,6 +31,23 @@ bool NativeProgram::stop() {
     }));
 }
 
+namespace {
+
+struct SavedProgram final : SavedBrain {
+    explicit SavedProgram(Controllers::Saved state) : controllers(std::move(state)) {}
+    Controllers::Saved controllers;
+};
+
+}  // namespace
+
+std::unique_ptr<SavedBrain> NativeProgram::save() {
+    return std::make_unique<SavedProgram>(controllers_.save());
+}
+
+void NativeProgram::restore(SavedBrain const& saved) {
+    controllers_.restore(static_cast<SavedProgram const&>(saved).controllers);
+}
+
 void NativeProgram::share_steps(bool shares_nothing) {
     if (workers_.size() == 1) {
         return;

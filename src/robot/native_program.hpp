@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "base/worker_pool.hpp"
 #include "brain/brain.hpp"
@@ -32,6 +34,11 @@ public:
     void share_steps(bool shares_nothing);
 
     std::optional<UserFailure> failure() const override { return failure_; }
+
+    // Its state is hashed by state_hash(): it contains addresses, which differ from process to process.
+    std::unique_ptr<SavedBrain> save() override;
+    void restore(SavedBrain const& saved) override;
+    std::string why_not_saved() const override { return controllers_.why_not_saved(); }
 
 private:
     bool succeeds(std::optional<UserFailure> failure);

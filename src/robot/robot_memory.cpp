@@ -353,6 +353,38 @@ void RobotMemory::repeat_common_changes() {
     }
 }
 
+RobotMemory::Saved RobotMemory::save_all() {
+    load(kNone);
+    Saved saved{.same = same_, .other = other_, .different = different_, .copies = {}, .changed = changed_};
+    saved.copies.reserve(robots_ * copied_bytes());
+    for (std::uint32_t robot = 0; robot < robots_; ++robot) {
+        saved.copies.insert(saved.copies.end(), slot(robot, 0), slot(robot, 0) + copied_bytes());
+    }
+    return saved;
+}
+
+void RobotMemory::restore_all(Saved const& saved) {
+    load(kNone);
+    same_ = saved.same;
+    other_ = saved.other;
+    changed_ = saved.changed;
+    for (std::uint32_t const block : different_) {
+        blocks_[block].slot = kSame;
+    }
+    different_ = saved.different;
+    for (std::uint32_t own_slot = 0; own_slot < different_.size(); ++own_slot) {
+        blocks_[different_[own_slot]].slot = own_slot;
+    }
+    std::byte const* from = saved.copies.data();
+    for (std::uint32_t robot = 0; robot < robots_ && copied_bytes() > 0; ++robot, from += copied_bytes()) {
+        std::memcpy(slot(robot, 0), from, copied_bytes());
+    }
+    find_runs();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        put(blocks_[i], other_.data() + i * kBlockBytes);
+    }
+}
+
 std::vector<RobotMemory::Part> RobotMemory::changed_parts(std::uint32_t copy) {
     save();
     std::vector<Part> parts;

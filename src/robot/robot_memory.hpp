@@ -17,6 +17,11 @@ namespace pogosim {
 
 class RobotMemory {
 public:
+    struct ChangedByte {
+        std::byte* place = nullptr;  // in the program
+        std::byte value{};
+    };
+
     /// Makes `robots` copies of what is in these pieces of the program's memory now, and one more for code that belongs
     /// to no robot. The pieces must not overlap.
     RobotMemory(std::span<std::span<std::byte> const> pieces, std::uint32_t robots);
@@ -48,6 +53,17 @@ public:
     /// The blocks in which a copy (of a robot, or kNone) differs from the beginning, ascending.
     std::vector<Part> changed_parts(std::uint32_t copy);
 
+    /// What all copies are now.
+    struct Saved {
+        std::vector<std::byte> same;
+        std::vector<std::byte> other;
+        std::vector<std::uint32_t> different;
+        std::vector<std::byte> copies;  // of the blocks that differ, robot by robot
+        std::vector<ChangedByte> changed;
+    };
+    Saved save_all();
+    void restore_all(Saved const& saved);
+
     /// Bytes of one copy.
     std::size_t bytes() const { return first_.size(); }
     /// Number of blocks that are copied.
@@ -66,11 +82,6 @@ private:
     struct Run {  // of blocks that lie one behind the other
         std::size_t first = 0;
         std::size_t last = 0;  // not one of them
-    };
-
-    struct ChangedByte {
-        std::byte* place = nullptr;  // in the program
-        std::byte value{};
     };
 
     static void put(Block const& block, std::byte const* from);

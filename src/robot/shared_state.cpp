@@ -52,6 +52,7 @@ constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
                                "memcpy"sv,
                                "memmove"sv,
                                "memset"sv,
+                               "pogosim_is_for_sdk"sv,
                                "qsort"sv,
                                "realloc"sv,
                                "snprintf"sv,
@@ -123,6 +124,7 @@ LoadedObject const& simulator() {
 }
 
 constexpr auto kInOneFile = "the program and the simulator are in one file";
+constexpr auto kNoSymbols = "the program has no symbol table, which tells what it uses: link it without -s";
 
 bool is_in_file_of_simulator(ProgramImage const& image) {
     return object_of(reinterpret_cast<void const*>(image.main)).begin == simulator().begin;
@@ -136,6 +138,12 @@ bool is_harmless_name(std::string_view name) {
     }
     bool const throws = name.starts_with("_ZSt") && name.find("__throw_") != std::string_view::npos;
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
+}
+
+/// As malloc() and its relatives do, and operator new.
+bool allocates(std::string_view name) {
+    return name == "malloc" || name == "calloc" || name == "realloc" || name == "aligned_alloc" ||
+           name.starts_with("_Znw") || name.starts_with("_Zna");
 }
 
 /// The simulator's own functions know of threads; the mathematical ones have no state, but for those that set
@@ -185,7 +193,7 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     }
     ProgramSymbols const symbols = image.symbols();
     if (!symbols.are_known) {
-        return "the program has no symbol table, which tells what robots share: link it without -s";
+        return kNoSymbols;
     }
     for (ProgramSymbols::Variable const& variable : symbols.variables) {
         if (!is_own(variable.name) &&
@@ -205,6 +213,26 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     for (std::string const& name : symbols.imports) {
         if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state that all robots share", name);
+        }
+    }
+    return "";
+}
+
+std::string why_state_is_not_copied(ProgramImage const& image) {
+    if (is_in_file_of_simulator(image)) {
+        return kInOneFile;
+    }
+    ProgramSymbols const symbols = image.symbols();
+    if (!symbols.are_known) {
+        return kNoSymbols;
+    }
+    for (std::string const& name : symbols.imports) {
+        if (allocates(name)) {
+            return fmt::format("the program allocates memory ('{}'), which is not copied: use arrays of a fixed size",
+                               name_by_symbol(name));
+        }
+        if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
+            return fmt::format("the program uses '{}', which may have a state of its own", name_by_symbol(name));
         }
     }
     return "";

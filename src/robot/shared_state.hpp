@@ -17,6 +17,10 @@ namespace pogosim {
 /// sqrtf(). To be called after the program has read its configuration.
 std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVariable const> bound);
 
+/// Why the state of a program cannot be copied, to go on from it later; empty: it can be. It is in variables of the
+/// program and in user data, and not in memory that it allocates, nor in a library that it calls.
+std::string why_state_is_not_copied(ProgramImage const& image);
+
 /// Variables of the program that its code may change, in the memory of which robots may have their own copies, and of
 /// which nothing is set from the configuration. Empty where that is not known.
 std::vector<ProgramSymbols::Variable> variables_of_all_robots(ProgramImage const& image,

@@ -41,6 +41,7 @@ namespace pogosim {
 
 class Profile;
 class WindowDriver;
+struct SavedRun;
 struct FirmwareServices;
 
 struct RunOptions {
@@ -142,6 +143,15 @@ public:
     /// Gives the variables that the program has set to the value of `parameters.NAME` another one. False if there are
     /// none. Throws ConfigError for a value that the program would have been refused.
     bool set_parameter(std::string const& name, std::string const& yaml_value);
+
+    /// Copies the state between two steps. Throws ConfigError for a run whose state cannot be copied, which
+    /// why_not_saved() tells.
+    std::unique_ptr<SavedRun> save();
+    std::string why_not_saved() const;
+
+    /// Goes on from a state of this run, as it did then; parameters that were set since stay for programs that read
+    /// them again. Arrays of the world stay where they are.
+    void restore(SavedRun const& saved);
 
     /// Brings the file of a run that goes on up to date. Throws OutputError.
     void save_now();

@@ -200,7 +200,7 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers,
     }
     std::vector<std::byte> bytes;
     for (auto const& brain : brains) {
-        brain->save(bytes);
+        brain->append_state(bytes);
     }
     hash.add_bytes(bytes);
     return mix64(hash.value());

@@ -70,11 +70,9 @@ TEST(ScriptBrain, GoesOnFromWhereItWasSaved) {
     World world = robot_with({.entries = {{.time_s = 0.0, .message = "a"}, {.time_s = 1.0, .message = "b"}}});
     ScriptBrain brain(world, 0);
     run_until(world, brain, 10);
-    std::vector<std::byte> saved;
-    brain.save(saved);
+    auto const saved = brain.save();
     ScriptBrain other(world, 0);
-    std::span<std::byte const> rest = saved;
-    other.restore(rest);
+    other.restore(*saved);
     world.air.clear();
     run_until(world, other, 200);
     EXPECT_EQ(world.air.payloads, (std::vector{std::byte{'b'}}));

@@ -297,6 +297,7 @@ ARGUMENTS: dict[str, Any] = {
     "value": 1,
     "file": "/dev/null",
     "category": "robots",
+    "state": None,
 }
 
 

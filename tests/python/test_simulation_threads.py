@@ -34,6 +34,7 @@ ARGUMENTS: dict[str, Any] = {
     "obj": 0,
     "category": "robots",
     "file": "copy.feather",
+    "state": None,
 }
 
 
@@ -103,7 +104,8 @@ def test_run_is_kept_until_the_last_call_that_uses_it_returns(
     try:
         use(simulation, name)
     except (pogosim.SimulationError, FileNotFoundError) as error:
-        assert disturbance == "close" or name in ("brain", "firmware_variable"), error  # a program drives these robots
+        # A program drives these robots, and the run writes rows, so it has no state to go back to.
+        assert disturbance == "close" or name in ("brain", "firmware_variable", "save", "restore"), error
     finally:
         simulation.close()
         monkeypatch.undo()

@@ -4,6 +4,7 @@ from pogosim.simulation.arrays import Columns
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 from pogosim.simulation.run import Simulation
+from pogosim.simulation.saved_state import SavedState
 from pogosim.simulation.vector import VectorSimulation
 
 __all__ = [
@@ -11,6 +12,7 @@ __all__ = [
     "Columns",
     "ConfigurationError",
     "ProgramFailedError",
+    "SavedState",
     "Simulation",
     "SimulationError",
     "VectorSimulation",

@@ -133,6 +133,9 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_columns": (c_char_p, (c_void_p,)),
     "pogosim_run_light_levels": (None, (c_void_p, c_void_p)),
     "pogosim_run_save": (c_int, (c_void_p,)),
+    "pogosim_run_save_state": (c_int, (c_void_p, POINTER(c_void_p))),
+    "pogosim_run_restore_state": (c_int, (c_void_p, c_void_p)),
+    "pogosim_state_free": (None, (c_void_p,)),
     "pogosim_run_leave_archive": (None, (c_void_p,)),
     "pogosim_run_hash": (c_uint64, (c_void_p,)),
 }

@@ -28,6 +28,7 @@ from pogosim.simulation.errors import ConfigurationError, NoVariableError, Simul
 from pogosim.simulation.firmware_variables import USER_DATA, Variable, variables_of
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
+from pogosim.simulation.saved_state import SavedState
 from pogosim.simulation.user_data import user_data_type
 from pogosim.yaml_1_2 import dump_yaml
 
@@ -275,6 +276,34 @@ class Simulation:
             except BaseException:
                 self._current.abandon()
                 raise
+
+    def save(self) -> SavedState:
+        """Return a copy of the state, from which `restore` goes on, as often as wanted.
+
+        The copy has poses, velocities, LEDs, messages under way, clocks, random streams, and the program's variables,
+        user data and robots that wait in the middle. A run of 20 robots takes a fraction of a millisecond for it.
+
+        Raises:
+            ConfigurationError: The run writes files, whose rows would go back in time (`enable_data_logging: false`
+                does without), moves bodies with Box2D, or its program allocates memory or uses a library that may have
+                a state of its own. The run goes on.
+        """
+        with self._busy():
+            return SavedState(self._run, self._settings, self._parameter_values)
+
+    def restore(self, state: SavedState) -> None:
+        """Go on from a state that `save` returned: what follows is, to the bit, what followed then.
+
+        Arrays that were kept show the state; parameters are those of then, too.
+
+        Raises:
+            ConfigurationError: It is the state of another run, or of this one before a `reset`.
+        """
+        with self._busy():
+            if not isinstance(state, SavedState):
+                raise given.refused("state", "what save() has returned", state)
+            check(library().pogosim_run_restore_state(self._run.pointer, state.pointer))
+            self._settings, self._parameter_values = dict(state.settings), dict(state.parameters)
 
     def close(self) -> None:
         """End the run. Its memory is freed as soon as no array of it is left."""

@@ -1,0 +1,69 @@
+#include "sim/saved_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+#include "base/error.hpp"
+#include "sim/simulation.hpp"
+
+namespace pogosim {
+
+/// Rows, messages and pictures would go back in time.
+std::string Simulation::why_not_saved() const {
+    if (recorder_.row_count()) {
+        return "it writes a data file (enable_data_logging: false)";
+    }
+    if (!scenario_.output.message_log.empty()) {
+        return "it writes a log of messages (message_log)";
+    }
+    if (pictures_) {
+        return "it saves pictures (save_video_period: -1)";
+    }
+    if (observer_) {
+        return "its firmware is profiled, or looked at by gdb";
+    }
+    for (auto const& brain : brains_) {
+        if (std::string reason = brain->why_not_saved(); !reason.empty()) {
+            return reason;
+        }
+    }
+    return "";
+}
+
+std::unique_ptr<SavedRun> Simulation::save() {
+    Thread const thread(*this);
+    if (std::string const reason = why_not_saved(); !reason.empty()) {
+        throw ConfigError(fmt::format("the state of this run cannot be saved: {}", reason));
+    }
+    auto physics = physics_->copy();
+    if (!physics) {
+        throw ConfigError(fmt::format("the state of this run cannot be saved: its physics engine ({}) cannot be copied",
+                                      physics_engine_behind(scenario_.physics_engine, world_)));
+    }
+    auto saved = std::make_unique<SavedRun>(
+        SavedRun{.world = world_, .lighting = lighting_, .physics = std::move(physics), .brains = {}});
+    for (auto const& brain : brains_) {
+        saved->brains.push_back(brain->save());
+    }
+    return saved;
+}
+
+void Simulation::restore(SavedRun const& saved) {
+    Thread const thread(*this);
+    assert(saved.brains.size() == brains_.size());
+    world_ = saved.world;
+    lighting_ = saved.lighting;
+    physics_ = saved.physics->copy();
+    for (std::size_t i = 0; i < brains_.size(); ++i) {
+        brains_[i]->restore(*saved.brains[i]);
+    }
+    services_.stop_requested = false;
+    if (observed_motions_) {
+        observed_motions_->update(world_);
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,22 @@
+// A copy of a run between two steps, from which it can go on again and again: Simulation::save() and restore().
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "brain/brain.hpp"
+#include "light/lighting.hpp"
+#include "physics/physics_engine.hpp"
+#include "world/world.hpp"
+
+namespace pogosim {
+
+/// Of one run in one process. Must not outlive the run.
+struct SavedRun {
+    World world;
+    Lighting lighting;
+    std::unique_ptr<PhysicsEngine> physics;
+    std::vector<std::unique_ptr<SavedBrain>> brains;  // of Simulation::brains()
+};
+
+}  // namespace pogosim
