@@ -15,7 +15,21 @@ from pogosim.picture.swarm import read_recording
 from pogosim.times import as_float64
 from pogosim.utils import load_dataframe
 from pyarrow import feather
-from running import example, run
+from running import compile_text, example, run
+
+RARE = """
+#include "pogobase.h"
+typedef struct { uint8_t none; } USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+void user_init(void) { main_loop_hz = 1; }
+void user_step(void) {}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}
+"""
 
 
 def test_times_are_the_numbers_that_are_written(tmp_path: Path) -> None:
@@ -25,8 +39,9 @@ def test_times_are_the_numbers_that_are_written(tmp_path: Path) -> None:
 
 
 def test_rows_have_times_of_their_own_after_days(tmp_path: Path) -> None:
-    settings = {"simulation_time": 300_000, "time_step": 1.0, "save_data_period": 1.0, "objects.robots.nb": 1}
-    result = run(example("helloworld"), tmp_path, {**settings, "data_logger_fields": ["time"], "time_step": 0.9})
+    settings = {"simulation_time": 300_000, "time_step": 0.9, "save_data_period": 1.0, "objects.robots.nb": 1}
+    program = compile_text(tmp_path, RARE)  # of which 300 000 s are no more than as many ticks
+    result = run(program, tmp_path, {**settings, "data_logger_fields": ["time"]})
     assert result.code == 0, result.text
     times = result.frame()["time"].to_numpy()
     assert len(np.unique(times)) == len(times) > 100_000
