@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import os
 import re
 import subprocess
@@ -91,15 +92,32 @@ COMMANDS = [
 ]
 
 
+# Runs commands one after another, as many processes would import the same modules again; each says its lines in a file.
+ALL = """
+import json, os, sys, traceback
+from pogosim.command.main import main
+for number, words in enumerate(json.loads(sys.stdin.read())):
+    with open(f"said{number}", "wb") as said:
+        os.dup2(said.fileno(), 1)
+        os.dup2(said.fileno(), 2)
+    try:
+        main(words)
+    except SystemExit:
+        pass
+    except BaseException:
+        traceback.print_exc()
+    sys.stdout.flush()
+    sys.stderr.flush()
+"""
+
+
 def test_lines_of_all_tools_steer_no_terminal(tmp_path: Path) -> None:
     write_files(tmp_path)
-    code = "import sys\nfrom pogosim.command.main import main\nsys.exit(main())"
-    for command in COMMANDS:
-        words = [str(example("helloworld")) if word == "PROGRAM" else word for word in command]
-        done = subprocess.run(
-            [sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, check=False, timeout=120
-        )
-        said = (done.stdout + done.stderr).decode()
+    commands = [[str(example("helloworld")) if word == "PROGRAM" else word for word in words] for words in COMMANDS]
+    process = [sys.executable, "-c", ALL]
+    subprocess.run(process, input=json.dumps(commands), cwd=tmp_path, text=True, check=True, timeout=600)
+    for number, (command, words) in enumerate(zip(COMMANDS, commands, strict=True)):
+        said = (tmp_path / f"said{number}").read_bytes().decode()
         assert said.strip() or words[0] == "picture", words
         assert "Warning" not in said, (words, said)
         strange = {c for c in said if c != "\n" and unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp")}
