@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import contextlib
+import io
 import pickle
 import shutil
 from pathlib import Path
@@ -50,6 +52,16 @@ def analyze(data: Path, *options: str, draw: bool = False) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A folder with all tables and figures of the data file, and what was said of them."""
+    data = write_rows(tmp_path_factory.mktemp("drawn") / "data.feather", swarm(), metadata_of())
+    said = io.StringIO()
+    with contextlib.redirect_stderr(said):
+        folder = analyze(data, draw=True)
+    return folder, said.getvalue()
+
+
 def refused(data: Path, capsys: pytest.CaptureFixture[str], *options: str) -> str:
     """Run the command in vain; returns what it says, one line."""
     assert command("collective", ["-i", str(data), "-o", str(data.parent / "results"), *SMALL, *options], PROG) == 2
@@ -59,10 +71,10 @@ def refused(data: Path, capsys: pytest.CaptureFixture[str], *options: str) -> st
     return said.err.removeprefix(f"{PROG}: ")
 
 
-def test_each_metric_has_its_table_and_its_figures(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_metric_has_its_table_and_its_figures(drawn: tuple[Path, str]) -> None:
     assert [metric.key for metric in METRICS] == KEYS
-    folder = analyze(data, draw=True)
-    assert capsys.readouterr().err == ""
+    folder, said = drawn
+    assert said == ""
     names = {path.name for path in folder.iterdir()}
     figures = {metric.figure for metric in METRICS} | {"vortex_field"}
     assert {"polar_order_time", "milling_time", "g_r", "local_polar_dist"} < figures
@@ -121,8 +133,8 @@ def test_the_pickle_has_the_tables(data: Path) -> None:
     pd.testing.assert_frame_equal(tables["psi_k"], pd.read_csv(folder / "psi_k.csv"))
 
 
-def test_two_calls_write_the_same_bytes(data: Path) -> None:
-    first, second = analyze(data, draw=True), analyze(data, draw=True)
+def test_two_calls_write_the_same_bytes(drawn: tuple[Path, str], data: Path) -> None:
+    first, second = drawn[0], analyze(data, draw=True)
     files = sorted(path.name for path in first.iterdir())
     assert files == sorted(path.name for path in second.iterdir())
     assert [name for name in files if (first / name).read_bytes() != (second / name).read_bytes()] == []
