@@ -29,21 +29,15 @@ for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, sig
         signal.signal(number, signal.SIG_DFL)
 
 
-# Files that take longest, 120 to 30 s each: if one of them starts last, all processors but one wait for its end.
+# Files that take longest, ten minutes to one on a busy machine: if one of them starts last, all processors but one wait
+# for its end. Those of wheel and same_bytes are much longer where ccache has nothing.
 LONGEST = [
-    *(
-        "docs",
-        "wheel",
-        "window_input",
-        "same_bytes",
-        "signals",
-        "window",
-        "optimize_resume",
-        "batch_slurm",
-        "batch_runs",
-    ),
-    *("graph_reports", "misbehaviour", "analyze_locomotion", "scripts", "real_robot", "validation", "threads"),
-    *("pictures", "names_in_tools", "headers", "site", "tuning_numbers", "parameter_study"),
+    *("pictures", "docs", "optimize_resume", "site", "same_bytes", "headers", "calibration", "batch_slurm"),
+    *("wheel", "tuning_numbers", "extending", "literal_names", "batch_runs", "gdb", "message_layout"),
+    *("matplotlib_settings", "graph_reports", "same_as_firmware", "signals", "window_input"),
+    *("shared_variables", "parameter_study", "validation", "threads", "window", "compare_brains", "firmware"),
+    *("replay", "emu", "shared_state", "real_robot", "optimize_others", "misbehaviour", "mixed_scene"),
+    *("collective", "optimize_initial", "command", "simulation_ends", "communication_tools"),
 ]
 
 
