@@ -470,6 +470,10 @@ private:
 
 }  // namespace
 
+bool has_box2d_engine() {
+    return true;
+}
+
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls, WorkerPool& /*workers*/) {
     return std::make_unique<Box2dEngine>(world, walls);
 }

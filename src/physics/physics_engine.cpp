@@ -1,5 +1,7 @@
 #include "physics/physics_engine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -8,6 +10,8 @@
 namespace pogosim {
 
 namespace {
+
+constexpr std::string_view kBox2d = "box2d";
 
 struct Engine {
     std::string name;
@@ -19,7 +23,7 @@ struct Engine {
 std::array<Engine, 2> const& engines() {
     static std::array<Engine, 2> const table{{
         {"disk", make_disk_engine, why_unfit_for_disk_engine},
-        {"box2d", make_box2d_engine, [](World const&) { return std::string(); }},
+        {std::string(kBox2d), make_box2d_engine, [](World const&) { return std::string(); }},
     }};
     return table;
 }
@@ -48,8 +52,19 @@ std::string const& physics_engine_behind(std::string const& name, World const& w
     return engine_for(name, world).name;
 }
 
-std::string why_unfit(std::string const& name, World const& world) {
-    return engine_for(name, world).why_unfit(world);
+std::string why_unfit(std::string const& name, World const& world, bool has_box2d) {
+    Engine const& engine = engine_for(name, world);
+    std::string const no_disks = why_unfit_for_disk_engine(world);
+    bool const is_missing = engine.name == kBox2d && !has_box2d;
+    if (is_missing && no_disks.empty()) {
+        return fmt::format("is not there: this simulator was built without Box2D 2.4; use {}", kAutomaticEngine);
+    }
+    if (is_missing) {
+        return fmt::format("has no engine for it: disk {}, and this simulator was built without Box2D 2.4; use disks",
+                           no_disks);
+    }
+    std::string const reason = engine.why_unfit(world);
+    return reason.empty() ? "" : fmt::format("{}; use {}", reason, has_box2d ? "auto or box2d" : "disks");
 }
 
 std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls,

@@ -56,8 +56,12 @@ std::vector<std::string> const& physics_engine_names();
 /// The engine that a name stands for in this world: `name` itself, unless it is kAutomaticEngine.
 std::string const& physics_engine_behind(std::string const& name, World const& world);
 
-/// Why this engine cannot move what is in the world: "moves disks only, but ...". Empty if it can.
-std::string why_unfit(std::string const& name, World const& world);
+/// Whether the simulator is built with Box2D.
+bool has_box2d_engine();
+
+/// Why this engine cannot move what is in the world, and what can: "moves disks only, but ...; use auto or box2d".
+/// Empty if it can.
+std::string why_unfit(std::string const& name, World const& world, bool has_box2d = has_box2d_engine());
 
 /// An engine for the arena and the bodies as they are in the world now. `name`: one of the known ones. `workers`, which
 /// must outlive the engine, share its work where they can; results do not depend on them. Throws ConfigError when the

@@ -11,7 +11,7 @@
 
 namespace pogosim {
 
-/// Of one run in one process. Must not outlive the run.
+/// It belongs to one run in one process, and must not outlive the run.
 struct SavedRun {
     World world;
     Lighting lighting;

@@ -61,10 +61,9 @@ std::uint32_t thread_count(Scenario const& scenario, World const& world) {
 std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World const& world, WorkerPool& workers) {
     std::string const& engine = scenario.physics_engine;
     if (std::string const reason = why_unfit(engine, world); !reason.empty()) {
-        throw ConfigError(fmt::format("{}: {} {}; use {} or box2d", place_of(scenario, Setting::physics_engine), engine,
-                                      reason, kAutomaticEngine));
+        throw ConfigError(fmt::format("{}: {} {}", place_of(scenario, Setting::physics_engine), engine, reason));
     }
-    if (std::string const reason = why_unfit("disk", world); engine == kAutomaticEngine && !reason.empty()) {
+    if (std::string const reason = why_unfit_for_disk_engine(world); engine == kAutomaticEngine && !reason.empty()) {
         log().info("physics_engine: {}, since disk {}{}", physics_engine_behind(engine, world), reason,
                    world.periodic ? "; bodies do not meet across the borders of the arena" : "");
     }

@@ -18,7 +18,7 @@ from pogosim.simulation.errors import NoVariableError
 from running import ROOT, SHARED, compile_text, write_scene
 
 NO_FILES = {"enable_data_logging": False}
-# Of examples that have none of their own name.
+# For examples that have none of their own name.
 SIMPLE = ROOT / "conf" / "simple.yaml"
 CONFIGURATIONS = {"lighthouse_localization": "lighthouse", "walls": "walls_and_membranes"}
 PROGRAMS = sorted(path.stem for path in (ROOT / "examples").glob("*/*.so"))
