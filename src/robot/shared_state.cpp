@@ -130,12 +130,15 @@ bool is_in_file_of_simulator(ProgramImage const& image) {
     return object_of(reinterpret_cast<void const*>(image.main)).begin == simulator().begin;
 }
 
-bool is_harmless_name(std::string_view name) {
-    auto const begins = [name](std::string_view beginning) { return name.starts_with(beginning); };
+/// The name of a function of the C library without what says that it checks sizes: "__memcpy_chk" is "memcpy".
+std::string_view without_check(std::string_view name) {
     bool const is_checked_variant = name.starts_with("__") && name.ends_with("_chk");
-    if (is_checked_variant) {
-        name = name.substr(2, name.size() - 6);
-    }
+    return is_checked_variant ? name.substr(2, name.size() - 6) : name;
+}
+
+bool is_harmless_name(std::string_view name) {
+    name = without_check(name);
+    auto const begins = [name](std::string_view beginning) { return name.starts_with(beginning); };
     bool const throws = name.starts_with("_ZSt") && name.find("__throw_") != std::string_view::npos;
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
 }
@@ -144,6 +147,18 @@ bool is_harmless_name(std::string_view name) {
 bool allocates(std::string_view name) {
     return name == "malloc" || name == "calloc" || name == "realloc" || name == "aligned_alloc" ||
            name.starts_with("_Znw") || name.starts_with("_Zna");
+}
+
+/// Whether a function leaves nothing behind outside of the program's own memory. Texts, containers and exceptions of
+/// C++ do: they are on the heap. What gives memory back does not: there is none without what allocates it.
+bool leaves_no_state(std::string_view name) {
+    constexpr std::array of_runtime{"__cxa_atexit"sv,        "__cxa_begin_catch"sv,  "__cxa_deleted_virtual"sv,
+                                    "__cxa_finalize"sv,      "__cxa_guard_abort"sv,  "__cxa_guard_acquire"sv,
+                                    "__cxa_guard_release"sv, "__cxa_pure_virtual"sv, "__tls_get_addr"sv};
+    auto const begins = [name](std::string_view beginning) { return name.starts_with(beginning); };
+    constexpr std::array groups{"_ZTI"sv, "_ZTS"sv, "_ZTV"sv, "_Zdl"sv, "_Zda"sv};
+    return std::ranges::any_of(groups, begins) || std::ranges::find(of_runtime, name) != of_runtime.end() ||
+           std::ranges::binary_search(kHarmless, without_check(name));
 }
 
 /// The simulator's own functions know of threads; the mathematical ones have no state, but for those that set
@@ -219,6 +234,9 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
 }
 
 std::string why_state_is_not_copied(ProgramImage const& image) {
+    if (image.main == nullptr) {
+        return "";  // there is none
+    }
     if (is_in_file_of_simulator(image)) {
         return kInOneFile;
     }
@@ -226,12 +244,19 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
     if (!symbols.are_known) {
         return kNoSymbols;
     }
+    auto const is_of_thread = [](ProgramSymbols::Variable const& variable) {
+        return variable.is_of_thread && !is_own(variable.name) && variable.name != "mydata";
+    };
+    if (auto const found = std::ranges::find_if(symbols.variables, is_of_thread); found != symbols.variables.end()) {
+        return fmt::format("each thread has its own '{}' (thread_local), which is not copied",
+                           name_by_symbol(found->name));
+    }
     for (std::string const& name : symbols.imports) {
         if (allocates(name)) {
             return fmt::format("the program allocates memory ('{}'), which is not copied: use arrays of a fixed size",
                                name_by_symbol(name));
         }
-        if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
+        if (!leaves_no_state(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state of its own", name_by_symbol(name));
         }
     }

@@ -11,7 +11,7 @@
 
 namespace pogosim {
 
-/// It belongs to one run in one process, and must not outlive the run.
+/// Only the run that it is a copy of can go on from it, in the same process.
 struct SavedRun {
     World world;
     Lighting lighting;

@@ -14,7 +14,6 @@ import pogosim
 import pytest
 from firmwares import firmware_of, text
 from pogosim.simulation import ConfigurationError, SavedState, Simulation, SimulationError
-from pogosim.simulation.errors import NoVariableError
 from running import ROOT, SHARED, compile_text, write_scene
 
 NO_FILES = {"enable_data_logging": False}
@@ -43,7 +42,7 @@ def state_of(simulation: Simulation) -> State:
     )
     try:
         user_data = repr(simulation.user_data.tolist())  # not the bytes between its members
-    except NoVariableError:
+    except SimulationError:  # there is none
         user_data = ""
     lamps = [(lamp.is_on, lamp.intensity, lamp.position) for lamp in simulation.lamps]
     return [
@@ -205,6 +204,22 @@ def test_all_kinds_of_brains_go_on(tmp_path: Path) -> None:
         assert go_on() == first
 
 
+@pytest.mark.parametrize("brain", ["firmware", "host", "script"])
+def test_runs_without_a_program_go_on(brain: str, tmp_path: Path) -> None:
+    firmware = firmware_of(tmp_path / "robot", text("mydata->level += 3; pogobot_motor_set(motorL, rand() % 1024);"))
+    script = [{"time_s": 0.1 * i, "motors": [50 * i, 500, 0]} for i in range(20)]
+    of_robots = {"firmware": str(firmware), "host": "host", "script": {"script": script}}[brain]
+    scene = scene_of(tmp_path, {"objects.robots.nb": 5, "objects.robots.brain": of_robots})
+    with Simulation(firmware if brain == "firmware" else None, scene) as simulation:
+        if brain == "host":
+            simulation.brain("robots").motors[:] = [500, 800, 0]
+        simulation.step(30)
+        saved = simulation.save()
+        first = course(simulation)
+        simulation.restore(saved)
+        assert course(simulation) == first
+
+
 def test_what_a_host_has_changed_is_undone(tmp_path: Path) -> None:
     globals_ = "static float gain = 1.0f;"
     source = text("mydata->share = gain;", "", globals_).replace(
@@ -297,6 +312,55 @@ def test_programs_whose_state_is_elsewhere_are_refused(step: str, said: str, tmp
     program = program_of(tmp_path, f"char* volatile kept; (void)kept; {step}")
     with Simulation(program, scene_of(tmp_path)) as simulation, pytest.raises(ConfigurationError, match=said):
         simulation.save()
+
+
+@pytest.mark.parametrize(
+    ("globals_", "step", "said"),
+    [
+        (
+            'static std::string words = "more than fifteen letters";',
+            "words += 'x';",
+            "which may have a state of its own",
+        ),
+        ("static std::vector<int> numbers;", "numbers.push_back(1);", "the program (allocates memory|uses)"),
+        ("", "try { throw 5; } catch (int i) { msleep(300); mydata->n = i; }", "which may have a state of its own"),
+        ("static thread_local int count;", "mydata->n = ++count;", r"each thread has its own 'count' \(thread_local\)"),
+    ],
+)
+@pytest.mark.parametrize("flags", [(), ("-ftls-model=initial-exec",)])
+def test_programs_in_cpp_whose_state_is_elsewhere_are_refused(
+    globals_: str, step: str, said: str, flags: tuple[str, ...], tmp_path: Path
+) -> None:
+    source = f"""#include <string>
+    #include <vector>
+    #include "pogobase.h"
+    struct USERDATA {{ int n; }};
+    DECLARE_USERDATA(USERDATA)
+    REGISTER_USERDATA(USERDATA)
+    {globals_}
+    static void user_step() {{ {step} }}
+    int main() {{ pogobot_init(); pogobot_start(nullptr, user_step); return 0; }}"""
+    program = compile_text(tmp_path, source, "main.cpp", flags=(*SHARED, *flags))
+    with Simulation(program, scene_of(tmp_path)) as simulation:
+        simulation.step(20)
+        with pytest.raises(ConfigurationError, match=said):
+            simulation.save()
+
+
+def test_objects_of_cpp_without_a_heap_go_on(tmp_path: Path) -> None:
+    source = """#include "pogobase.h"
+    struct USERDATA { int n; };
+    DECLARE_USERDATA(USERDATA)
+    REGISTER_USERDATA(USERDATA)
+    struct Base { virtual ~Base() {} virtual int next() = 0; };
+    struct Counter : Base { int n = 3; int next() override { return n += 7; } };
+    static Counter counter;
+    static int first() { static Counter own; return own.next(); }
+    static void user_step() { Base& base = counter; mydata->n = base.next() + first(); }
+    int main() { pogobot_init(); pogobot_start(nullptr, user_step); return 0; }"""
+    program = compile_text(tmp_path, source, "main.cpp", flags=SHARED)
+    with Simulation(program, scene_of(tmp_path)) as simulation:
+        expect_same_course(simulation)
 
 
 def test_state_of_another_run_is_refused(tmp_path: Path) -> None:
