@@ -144,13 +144,13 @@ public:
     /// none. Throws ConfigError for a value that the program would have been refused.
     bool set_parameter(std::string const& name, std::string const& yaml_value);
 
-    /// Copies the state between two steps. Throws ConfigError for a run whose state cannot be copied, which
-    /// why_not_saved() tells.
+    /// Copies the state between two steps. Throws ConfigError for a run whose state cannot be copied.
     std::unique_ptr<SavedRun> save();
+
+    /// Why it cannot, but for a physics engine that cannot be copied; empty: it can.
     std::string why_not_saved() const;
 
-    /// Goes on from a state of this run, as it did then; parameters that were set since stay for programs that read
-    /// them again. Arrays of the world stay where they are.
+    /// Goes on from a state of this run, as it did then. Arrays of the world stay where they are.
     void restore(SavedRun const& saved);
 
     /// Brings the file of a run that goes on up to date. Throws OutputError.

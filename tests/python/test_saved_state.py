@@ -21,8 +21,6 @@ NO_FILES = {"enable_data_logging": False}
 SIMPLE = ROOT / "conf" / "simple.yaml"
 CONFIGURATIONS = {"lighthouse_localization": "lighthouse", "walls": "walls_and_membranes"}
 PROGRAMS = sorted(path.stem for path in (ROOT / "examples").glob("*/*.so"))
-# Those that allocate memory.
-NOT_SAVED: set[str] = set()
 
 State = list[Any]
 
@@ -86,11 +84,7 @@ def test_examples_go_on_as_they_did(name: str) -> None:
         settings["parameters.question"] = ""
     program = ROOT / "examples" / name / f"{name}.so"
     with Simulation(program, own if own.exists() else SIMPLE, set=settings) as simulation:
-        if name in NOT_SAVED:
-            with pytest.raises(ConfigurationError, match="the program allocates memory"):
-                simulation.save()
-        else:
-            expect_same_course(simulation)
+        expect_same_course(simulation)
 
 
 def test_robots_that_wait_in_the_middle_go_on_there(tmp_path: Path) -> None:
