@@ -245,16 +245,16 @@ void pogosim_recover_next_message(message_t* message, size_t max_payload_bytes) 
         context.services->warn_once_of({.text = pogosim::kNothingToReceive}, "{}", pogosim::kNothingToReceive);
         return;
     }
+    FrameHeader const& header = received->header;
+    std::memcpy(&message->header, &header, sizeof(header));
     // A program may have made its messages smaller (MAX_PAYLOAD_SIZE_BYTES).
-    FrameHeader header = received->header;
     std::size_t const size = std::min<std::size_t>(header.payload_length, max_payload_bytes);
     if (size < header.payload_length) [[unlikely]] {
         note_slip({"pogobot_infrared_recover_next_message", "the length of the message",
                    "no more bytes than this program has room for (MAX_PAYLOAD_SIZE_BYTES)", "the message is cut"},
                   header.payload_length);
+        message->header.payload_length = static_cast<std::uint16_t>(size);
     }
-    header.payload_length = static_cast<std::uint16_t>(size);
-    std::memcpy(&message->header, &header, sizeof(header));
     std::memcpy(message->payload, received->payload.data(), size);
     std::memset(message->payload + size, 0, max_payload_bytes - size);
 }

@@ -23,19 +23,21 @@ void Mailboxes::Fifo::move_to_front(std::byte* block) {
     head = 0;
 }
 
-inline void Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader const& header,
-                                  std::span<std::byte const> payload) {
+inline std::byte* Mailboxes::Fifo::push(std::byte* block, std::size_t capacity, FrameHeader const& header,
+                                        std::span<std::byte const> payload) {
     std::size_t const needed = kHeaderBytes + payload.size();
     if (tail + needed > capacity) [[unlikely]] {
         move_to_front(block);
     }
     assert(tail + needed <= capacity);
-    std::memcpy(block + tail, &header, kHeaderBytes);
+    std::byte* const message = block + tail;
+    std::memcpy(message, &header, kHeaderBytes);
     if (!payload.empty()) {
-        std::memcpy(block + tail + kHeaderBytes, payload.data(), payload.size());
+        std::memcpy(message + kHeaderBytes, payload.data(), payload.size());
     }
     tail += static_cast<std::uint32_t>(needed);
     ++count;
+    return message;
 }
 
 void TransmissionQueue::append(TransmissionQueue const& others) {
@@ -103,21 +105,20 @@ bool operator==(Mailboxes const& a, Mailboxes const& b) {
     return true;
 }
 
-inline void Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header,
-                              std::span<std::byte const> payload) {
+inline std::byte* Mailboxes::append(Queue& queue, std::size_t robot, FrameHeader const& header,
+                                    std::span<std::byte const> payload) {
     // Once a message is in the far block, so are all later ones: messages in the near block are older.
     bool const all_near = queue.waiting == queue.near.count;
     ++queue.waiting;
     if (all_near && queue.near.has_room(kHeaderBytes + payload.size(), kNearBytes)) [[likely]] {
-        queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
-    } else {
-        append_far(robot, header, payload);
+        return queue.near.push(queue.near_block.data(), kNearBytes, header, payload);
     }
+    return append_far(robot, header, payload);
 }
 
-void Mailboxes::append_far(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
+std::byte* Mailboxes::append_far(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
     FarQueue& far = far_[robot];
-    far.fifo.push(far_blocks_.get() + far.block, far.capacity, header, payload);
+    return far.fifo.push(far_blocks_.get() + far.block, far.capacity, header, payload);
 }
 
 bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload) {
@@ -131,7 +132,7 @@ bool Mailboxes::push(std::size_t robot, FrameHeader const& header, std::span<std
     return true;
 }
 
-unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload,
+unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
                                 unsigned faces) {
     assert(robot < queues_.size() && payload.size() == header.payload_length);
     Queue& queue = queues_[robot];
@@ -141,8 +142,9 @@ unsigned Mailboxes::push_copies(std::size_t robot, FrameHeader header, std::span
             dropped_[robot] += count_of_four(faces);
             break;
         }
-        header.receiver_ir_index = static_cast<std::uint8_t>(std::countr_zero(faces));
-        append(queue, robot, header, payload);
+        // Set in the copy: a load of the whole header right after a store of one byte of it would have to wait.
+        append(queue, robot, header, payload)[offsetof(FrameHeader, receiver_ir_index)] =
+            static_cast<std::byte>(std::countr_zero(faces));
     }
     return queue.waiting - before;
 }

@@ -97,7 +97,8 @@ public:
 
     /// Appends a copy for each of the faces (bit d: face d), lowest first, with the face in its header. Returns the
     /// number of copies that found room; the others count as dropped.
-    unsigned push_copies(std::size_t robot, FrameHeader header, std::span<std::byte const> payload, unsigned faces);
+    unsigned push_copies(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload,
+                         unsigned faces);
 
     /// Copies of a packet that arrive, one for each of the faces, as push_copies(): malformed ones are counted and not
     /// appended; of a command, the robot's library gets to know, too, even if the queue is full.
@@ -164,8 +165,9 @@ private:
         bool has_room(std::size_t bytes, std::size_t capacity) const { return tail - head + bytes <= capacity; }
         std::span<std::byte const> bytes(std::byte const* block) const { return {block + head, block + tail}; }
         [[gnu::noinline]] void move_to_front(std::byte* block);
-        void push(std::byte* block, std::size_t capacity, FrameHeader const& header,
-                  std::span<std::byte const> payload);
+        /// Returns where it lies: its header, then its payload.
+        std::byte* push(std::byte* block, std::size_t capacity, FrameHeader const& header,
+                        std::span<std::byte const> payload);
         Message take(std::byte const* block) {
             assert(count > 0 && head + sizeof(FrameHeader) <= tail);
             Message message;
@@ -202,8 +204,9 @@ private:
                              PacketKind kind, unsigned faces);
     void remove_all(std::size_t robot);
     std::size_t far_bytes() const { return far_.empty() ? 0 : far_.back().block + far_.back().capacity; }
-    void append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
-    [[gnu::noinline]] void append_far(std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
+    std::byte* append(Queue& queue, std::size_t robot, FrameHeader const& header, std::span<std::byte const> payload);
+    [[gnu::noinline]] std::byte* append_far(std::size_t robot, FrameHeader const& header,
+                                            std::span<std::byte const> payload);
 
     std::vector<Queue> queues_;
     std::vector<FarQueue> far_;
