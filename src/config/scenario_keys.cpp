@@ -58,8 +58,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "Simulated duration of the run."},
         K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Simulation step."},
         K{"physics_engine", one_of(&Scenario::physics_engine, engines), any(), "",
-          "What moves the objects. auto: disk where all bodies that move are disks, else box2d. disk: several times "
-          "faster, moves disks and membranes of disks only. box2d: moves everything."},
+          "What moves the objects. auto: disk, except for membranes of segments (rectmembrane), which box2d moves. "
+          "disk: the simulator's own engine, several times faster. box2d: Box2D 2.4."},
         K{"threads", NumberOr<Scenario, int>{&Scenario::threads, "auto"}, between(1, kMostThreads), "",
           "Threads that share the work of a run; results are the same with any number. auto: one for every 2000 "
           "objects, up to the number of processors. Many runs at a time are faster with one thread each."},

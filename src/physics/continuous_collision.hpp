@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/grid.hpp"
-#include "physics/fixed_polygons.hpp"
+#include "physics/hulls.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -15,23 +15,26 @@ class ContinuousCollision {
 public:
     explicit ContinuousCollision(World const& world);
 
-    /// Stops disks where they first touch others on their straight paths from the start to the end of the step; the
+    /// Stops bodies where they first touch others on their straight paths from the start to the end of the step; the
     /// impact itself happens in the next step. Tests the paths of the `fast` bodies, and of all bodies that meet one
     /// that has been stopped. Returns the bodies whose motion was shortened; some may be listed twice. Two bodies that
     /// overlap at the start do not approach further. Bodies of membranes do not stop each other.
-    std::vector<std::uint32_t> const& stop_at_impacts(World& world, FixedPolygons const& polygons,
+    std::vector<std::uint32_t> const& stop_at_impacts(World& world, Hulls const& hulls,
                                                       std::span<std::uint32_t const> fast);
 
 private:
     void find_ways(World const& world, std::span<std::uint32_t const> fast);
     float reach_mm(Bodies const& bodies, std::uint32_t i) const;
-    float free_fraction(World const& world, FixedPolygons const& polygons, std::uint32_t i) const;
+    float free_fraction(World const& world, Hulls const& hulls, std::uint32_t i) const;
     float fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const;
+    float fraction_before_hull(World const& world, Hulls const& hulls, std::uint32_t i, std::uint32_t k) const;
+    Hull hull_at(World const& world, Hulls const& hulls, std::uint32_t i, float fraction, Vec2 origin_mm) const;
     void look_at_again(World const& world, std::uint32_t i);
 
     std::vector<char> is_of_membrane_;  // all bodies
     std::vector<Vec2> starts_mm_;       // of all bodies
     std::vector<Vec2> motions_mm_;      // of all bodies, from start to end of the step
+    std::vector<float> turns_rad_;      // the same
     std::vector<float> fractions_;      // of its motion that each body makes
     std::vector<std::uint32_t> waiting_;
     std::vector<char> is_waiting_;  // of all bodies

@@ -26,7 +26,7 @@ ContactLaw law_between(Disk const& a, Disk const& b) {
 
 DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
     : membranes_(world),
-      polygons_(world),
+      hulls_(world),
       wall_{.radius_mm = 0.0F,
             .inverse_mass = 0.0F,
             .inverse_inertia = 0.0F,
@@ -35,17 +35,27 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
       spring_impulse_(world.joints.size()) {
     Bodies const& bodies = world.bodies;
     std::vector<float> mass;
+    std::vector<float> gyration_mm2;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         float const radius_mm = bodies.radius_mm[i];
-        mass.push_back(bodies.spec[i].density * std::numbers::pi_v<float> * radius_mm * radius_mm);
+        auto const body = static_cast<std::uint32_t>(i);
+        if (hulls_.is_one(body)) {
+            auto const [area_mm2, of_area_mm2] = mass_of(hulls_.of(world, body));
+            mass.push_back(bodies.spec[i].density * area_mm2);
+            gyration_mm2.push_back(of_area_mm2);
+        } else {
+            mass.push_back(bodies.spec[i].density * std::numbers::pi_v<float> * radius_mm * radius_mm);
+            gyration_mm2.push_back(0.5F * radius_mm * radius_mm);
+        }
     }
     add_mass_to_membranes(world, mass);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         BodySpec const& spec = bodies.spec[i];
         float const radius_mm = bodies.radius_mm[i];
-        disks_.push_back({.radius_mm = polygons_.is_one(static_cast<std::uint32_t>(i)) ? 0.0F : radius_mm,
+        bool const is_fixed_hull = spec.fixed && hulls_.is_one(static_cast<std::uint32_t>(i));
+        disks_.push_back({.radius_mm = is_fixed_hull ? 0.0F : radius_mm,
                           .inverse_mass = spec.fixed ? 0.0F : 1.0F / mass[i],
-                          .inverse_inertia = spec.fixed ? 0.0F : 2.0F / (mass[i] * radius_mm * radius_mm),
+                          .inverse_inertia = spec.fixed ? 0.0F : 1.0F / (mass[i] * gyration_mm2[i]),
                           .friction = spec.friction,
                           .restitution = spec.restitution});
     }
@@ -53,8 +63,8 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
 
 /// The bounding disk of a polygon may be much larger than the polygon.
 void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
-    if (!polygons_.is_one(fixed) ||
-        polygons_.gap_to(world, fixed, world.bodies.position_mm[disk]).distance_mm < disks_[disk].radius_mm + skin_mm) {
+    if (!hulls_.is_one(fixed) ||
+        hulls_.gap_to(world, fixed, world.bodies.position_mm[disk]).distance_mm < disks_[disk].radius_mm + skin_mm) {
         with_fixed_.push_back({.a = disk, .b = fixed, .law = law_between(disks_[disk], disks_[fixed])});
     }
 }
@@ -65,7 +75,7 @@ void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNei
     near_.clear();
     with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
-        if (!membranes_.may_collide(a, b)) {
+        if (!membranes_.may_collide(a, b) || is_movable_hull(a) || is_movable_hull(b)) {
             continue;
         }
         if (is_fixed(a)) {
@@ -80,36 +90,73 @@ void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNei
     near_.insert(near_.end(), with_fixed_.begin(), with_fixed_.end());
     first_wall_ = static_cast<std::uint32_t>(near_.size());
     for (auto const [body, edge] : walls.walls()) {
-        near_.push_back({.a = body, .b = edge, .law = law_between(disks_[body], wall_)});
+        if (!hulls_.is_one(body)) {
+            near_.push_back({.a = body, .b = edge, .law = law_between(disks_[body], wall_)});
+        }
+    }
+    first_hull_ = first_hull_fixed_ = first_hull_wall_ = static_cast<std::uint32_t>(near_.size());
+    if (!hulls_.empty()) {
+        add_hulls(pairs, walls);
     }
     give_impulses();
+}
+
+void DiskContacts::add_hulls(NeighbourList const& pairs, WallNeighbourList const& walls) {
+    with_fixed_.clear();
+    for (auto const [a, b] : pairs.pairs()) {
+        if (!membranes_.may_collide(a, b) || !(is_movable_hull(a) || is_movable_hull(b))) {
+            continue;
+        }
+        NearContact const near{
+            .a = is_fixed(a) ? b : a, .b = is_fixed(a) ? a : b, .law = law_between(disks_[a], disks_[b])};
+        (is_fixed(near.b) ? with_fixed_ : near_).push_back(near);
+    }
+    first_hull_fixed_ = static_cast<std::uint32_t>(near_.size());
+    near_.insert(near_.end(), with_fixed_.begin(), with_fixed_.end());
+    first_hull_wall_ = static_cast<std::uint32_t>(near_.size());
+    for (auto const [body, edge] : walls.walls()) {
+        if (hulls_.is_one(body)) {
+            near_.push_back({.a = body, .b = edge, .law = law_between(disks_[body], wall_)});
+        }
+    }
 }
 
 /// Symmetric in the two disks.
 std::uint64_t DiskContacts::things_of(std::uint32_t contact) const {
     auto const [a, b, law] = near_[contact];
     constexpr std::uint64_t walls = std::uint64_t{1} << 63U;
-    return contact >= first_wall_ ? walls | std::uint64_t{a} << 32U | b
-                                  : std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+    return is_wall(contact) ? walls | std::uint64_t{a} << 32U | b
+                            : std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
 }
 
 void DiskContacts::keep_impulses() {
     pushing_.clear();
-    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+    for (std::uint32_t i = 0; i < first_hull_; ++i) {
         if (driven_impulse_[i] > 0.0F) {
-            pushing_.push_back({things_of(i), driven_impulse_[i]});
+            pushing_.push_back({.things = things_of(i), .impulse = driven_impulse_[i], .of_hull = {}});
+        }
+    }
+    for (std::uint32_t i = first_hull_; i < near_.size(); ++i) {
+        HullImpulse const& impulse = hull_impulse_[i - first_hull_];
+        if (impulse.parts[0].normal > 0.0F || impulse.parts[1].normal > 0.0F) {
+            pushing_.push_back({.things = things_of(i), .impulse = 0.0F, .of_hull = impulse});
         }
     }
     std::ranges::sort(pushing_, {}, &Pushing::things);
 }
 
 void DiskContacts::give_impulses() {
-    driven_impulse_.assign(near_.size(), 0.0F);
+    driven_impulse_.assign(first_hull_, 0.0F);
+    hull_impulse_.assign(near_.size() - first_hull_, {});
     for (std::uint32_t i = 0; i < near_.size() && !pushing_.empty(); ++i) {
         std::uint64_t const things = things_of(i);
         auto const known = std::ranges::lower_bound(pushing_, things, {}, &Pushing::things);
         if (known != pushing_.end() && known->things == things) {
-            driven_impulse_[i] = known->impulse;
+            if (i < first_hull_) {
+                driven_impulse_[i] = known->impulse;
+            } else {
+                hull_impulse_[i - first_hull_] = known->of_hull;
+            }
         }
     }
 }
@@ -119,10 +166,22 @@ std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t 
     if (contact >= first_wall_) {
         return gap_to((*walls_)[fixed], point_mm);
     }
-    if (polygons_.is_one(fixed)) {
-        return polygons_.gap_to(world, fixed, point_mm);
+    if (hulls_.is_one(fixed)) {
+        return hulls_.gap_to(world, fixed, point_mm);
     }
     return gap_to_centre(minimum_image(world, world.bodies.position_mm[fixed], point_mm));
+}
+
+float DiskContacts::gap_of_hull_mm(World const& world, std::uint32_t contact) const {
+    auto const [a, b, law] = near_[contact];
+    Vec2 const place_mm = world.bodies.position_mm[a];
+    if (is_wall(contact)) {
+        return distance_to(wall_side(contact), place_mm) - law.radius_mm;
+    }
+    // About the centre of `a`, which may be on the other side of a seam.
+    Vec2 const to_b_mm = minimum_image(world, place_mm, world.bodies.position_mm[b]);
+    return gap_between_mm(placed(hulls_.of(world, a), {}, world.bodies.heading_dir[a]),
+                          placed(hulls_.of(world, b), to_b_mm, world.bodies.heading_dir[b]));
 }
 
 }  // namespace pogosim

@@ -1,12 +1,13 @@
-// The contacts that disks can make in the coming steps, with other disks, obstacles and walls.
+// The contacts that bodies can make in the coming steps, with others, obstacles and walls.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "physics/fixed_polygons.hpp"
+#include "physics/hulls.hpp"
 #include "physics/membrane_filter.hpp"
 #include "physics/neighbour_list.hpp"
 #include "physics/soft_membranes.hpp"
@@ -18,7 +19,17 @@ namespace pogosim {
 /// Overlaps up to this, in mm, are left as they are; they count as no contact.
 inline constexpr float kContactToleranceMm = 0.05F;
 
-/// Constants of a contact.
+/// Impulses of the two touches of a hull.
+struct HullImpulse {
+    struct Part {
+        float normal = 0.0F;
+        float tangent = 0.0F;
+        std::uint32_t features = 0;  // see Touch
+    };
+    std::array<Part, 2> parts;
+};
+
+/// Constants of a contact. The masses are those of disks.
 struct ContactLaw {
     float radius_mm;    // sum of the two radii
     float normal_mass;  // impulse that changes the speed of separation by 1 mm/s
@@ -28,16 +39,16 @@ struct ContactLaw {
     float restitution;   // 0 to 1
 };
 
-/// A movable disk and the thing that it may touch.
+/// A movable body and the thing that it may touch.
 struct NearContact {
     std::uint32_t a;
-    std::uint32_t b;  // another movable disk, a fixed body, or an edge of a wall: see DiskContacts
+    std::uint32_t b;  // another movable body, a fixed one, or an edge of a wall: see DiskContacts
     ContactLaw law;
 };
 
 /// Constants of a body, for the whole run.
 struct Disk {
-    float radius_mm;        // 0 for a polygon
+    float radius_mm;        // 0 for a fixed polygon
     float inverse_mass;     // 0: fixed
     float inverse_inertia;  // 1 / (mass mm^2)
     float friction;
@@ -57,21 +68,37 @@ public:
     /// Builds the contacts from the neighbour lists.
     void build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls);
 
-    /// First pairs of movable disks, then disks with fixed bodies, then disks with walls.
+    /// First pairs of movable disks, then disks with fixed bodies, then disks with walls. Then the contacts in which a
+    /// movable body is a hull, in the same order.
     std::vector<NearContact> const& near() const { return near_; }
 
     /// Number of pairs of movable disks.
     std::uint32_t pair_count() const { return pair_count_; }
 
+    /// The first contact of a movable hull.
+    std::uint32_t first_hull() const { return first_hull_; }
+
+    /// Both bodies can move.
+    bool is_pair(std::uint32_t contact) const {
+        return contact < pair_count_ || (contact >= first_hull_ && contact < first_hull_fixed_);
+    }
+    bool is_wall(std::uint32_t contact) const {
+        return contact < first_hull_ ? contact >= first_wall_ : contact >= first_hull_wall_;
+    }
+    WallSide const& wall_side(std::uint32_t contact) const { return (*walls_)[near_[contact].b]; }
+
     /// Impulse of each contact at the last step in which motors drove it, 0 for a new one: the initial guess for the
     /// next such step.
     std::vector<float>& driven_impulse() { return driven_impulse_; }
+
+    /// The same for contacts of hulls, from first_hull() on.
+    std::vector<HullImpulse>& hull_impulse() { return hull_impulse_; }
 
     /// The same for each joint of the world, which is a spring.
     std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
     std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
 
-    FixedPolygons const& polygons() const { return polygons_; }
+    Hulls const& hulls() const { return hulls_; }
 
     Disk const& disk(std::uint32_t body) const { return disks_[body]; }
 
@@ -79,31 +106,42 @@ public:
     /// see gap_to().
     std::optional<Gap> gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const;
 
+    /// The gap of a contact of a hull; to a wall, at most the gap.
+    float gap_of_hull_mm(World const& world, std::uint32_t contact) const;
+
 private:
     bool is_fixed(std::uint32_t body) const { return disks_[body].inverse_mass == 0.0F; }
+
+    bool is_movable_hull(std::uint32_t body) const { return !is_fixed(body) && hulls_.is_one(body); }
 
     /// A contact with an impulse, identified by its two things.
     struct Pushing {
         std::uint64_t things;
         float impulse;
+        HullImpulse of_hull;
     };
 
+    void add_hulls(NeighbourList const& pairs, WallNeighbourList const& walls);
     void add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm);
     std::uint64_t things_of(std::uint32_t contact) const;
     void keep_impulses();
     void give_impulses();
 
     MembraneFilter membranes_;
-    FixedPolygons polygons_;
+    Hulls hulls_;
     std::vector<Disk> disks_;
     Disk wall_;
     std::vector<NearContact> near_;
     std::vector<NearContact> with_fixed_;  // scratch, while near_ is rebuilt
     std::vector<float> driven_impulse_;
+    std::vector<HullImpulse> hull_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
     std::vector<Pushing> pushing_;  // scratch, while near_ is rebuilt
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
+    std::uint32_t first_hull_ = 0;
+    std::uint32_t first_hull_fixed_ = 0;
+    std::uint32_t first_hull_wall_ = 0;
     std::shared_ptr<WallSides const> walls_;
 };
 

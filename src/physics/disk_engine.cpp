@@ -1,6 +1,6 @@
-// Our own engine for rigid disks: a structure of arrays, a neighbour list that stays valid until a body has moved far,
-// and a solver that sub-steps only bodies in contact. All other bodies move on a straight line, at the cost of reading
-// and writing them. Soft membranes are disks joined by springs. Obstacles, which never move, may be polygons.
+// Our own engine for rigid disks and convex polygons: a structure of arrays, a neighbour list that stays valid until a
+// body has moved far, and a solver that sub-steps only bodies in contact. All other bodies move on a straight line, at
+// the cost of reading and writing them. Soft membranes are disks joined by springs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,12 +50,12 @@ constexpr std::uint32_t kLeastBodies = 1024;
 constexpr float kCalmMmS = 1.0F;
 constexpr double kCalmAfterS = 0.5;
 
-/// The smallest radius of the bodies that are not part of a membrane; of all bodies if there are no others.
+/// The smallest inner radius of the bodies that are not part of a membrane; of all bodies if there are no others.
 float smallest_radius_mm(World const& world) {
     float smallest_mm = std::numeric_limits<float>::max();
     for (Object const& object : world.objects) {
         if (object.body_count == 1) {
-            smallest_mm = std::min(smallest_mm, world.bodies.radius_mm[object.body]);
+            smallest_mm = std::min(smallest_mm, inner_radius(world.bodies.shape[object.body]));
         }
     }
     return smallest_mm < std::numeric_limits<float>::max() ? smallest_mm : std::ranges::min(world.bodies.radius_mm);
@@ -80,6 +80,9 @@ public:
         for (std::uint32_t i = 0; i < bodies.size(); ++i) {
             if (!bodies.spec[i].fixed) {
                 movable_.push_back(i);
+                if (contacts_.hulls().is_one(i)) {
+                    movable_hulls_.push_back(i);
+                }
             }
         }
         if (!world.membranes.empty()) {
@@ -95,7 +98,7 @@ public:
         bool const is_driven = impose_commands(world);
         auto const dt_s = static_cast<float>(world.time_step_s);
         damping_.begin_step(bodies, dt_s);
-        float const fastest_mm_s = fastest(bodies);
+        float const fastest_mm_s = std::max(fastest(bodies), fastest_turn_mm_s(bodies));
         if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
             start_.note_still(bodies);  // as in a swarm that only communicates
             return;
@@ -196,7 +199,7 @@ private:
     }
 
     void hold_fast(World& world) {
-        for (std::uint32_t const i : continuous_collision_.stop_at_impacts(world, contacts_.polygons(), fast_)) {
+        for (std::uint32_t const i : continuous_collision_.stop_at_impacts(world, contacts_.hulls(), fast_)) {
             Vec2& place_mm = world.bodies.position_mm[i];
             place_mm = world.periodic ? wrapped_alone(world, place_mm) : position_correction_.hold_fast(i, place_mm);
         }
@@ -271,6 +274,15 @@ private:
         return std::sqrt(fastest2);
     }
 
+    /// The highest speed at which the turning of a hull moves its corners.
+    float fastest_turn_mm_s(Bodies const& bodies) const {
+        float fastest_mm_s = 0.0F;
+        for (std::uint32_t const i : movable_hulls_) {
+            fastest_mm_s = std::max(fastest_mm_s, std::abs(bodies.angular_velocity_rad_s[i]) * bodies.radius_mm[i]);
+        }
+        return fastest_mm_s;
+    }
+
     static bool turns(Bodies const& bodies) {
         return std::ranges::any_of(bodies.angular_velocity_rad_s, [](float spin) { return spin != 0.0F; });
     }
@@ -289,7 +301,8 @@ private:
     std::optional<MembraneSides> sides_;  // when there are membranes
     std::vector<double> calm_s_;          // of each membrane: how long it has been slow
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed
-    std::vector<std::uint32_t> fast_;     // bodies in this step
+    std::vector<std::uint32_t> movable_hulls_;
+    std::vector<std::uint32_t> fast_;  // bodies in this step
     std::vector<std::vector<std::uint32_t>> fast_in_range_;
     float most_motion_mm_ = std::numeric_limits<float>::max();  // in a step
     float ordinary_mm_ = 1.0F;                                  // a body that moves further in a step is fast
@@ -302,11 +315,8 @@ private:
 
 std::string why_unfit_for_disk_engine(World const& world) {
     for (Object const& object : world.objects) {
-        std::string const& name = world.categories[object.category].name;
-        bool const is_disk = object.body == kNone || world.bodies.shape[object.body].kind == ShapeKind::disk;
-        if (!is_disk && !world.bodies.spec[object.body].fixed) {
-            return fmt::format("moves disks only, but '{}' {}", name,
-                               object.body_count > 1 ? "is a membrane of segments" : "has another shape and can move");
+        if (object.body_count > 1 && world.bodies.shape[object.body].kind != ShapeKind::disk) {
+            return fmt::format("does not move membranes of segments ('{}')", world.categories[object.category].name);
         }
     }
     return "";

@@ -18,18 +18,16 @@ constexpr int kSubsteps = 4;
 // Iterations over the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
 constexpr float kConvergedMm = 0.005F;
 constexpr int kMostPasses = 8;
-constexpr int kMostSoftPasses = 6;  // an impulse has to travel round a membrane
-// Slower impacts are inelastic.
-constexpr float kRestitutionThresholdMmS = 5.0F;
+constexpr int kMostSoftPasses = 6;   // an impulse has to travel round a membrane
+constexpr int kMostHullPasses = 10;  // the two touches of a contact push against each other
 // Soft constraint: natural frequency relative to the rate of sub-steps, and damping ratio; see Catto, "Solver2D".
 constexpr float kStiffness = 0.25F;
 constexpr float kDampingRatio = 3.0F;
-constexpr float kFastestPushMmS = 500.0F;
 // A soft membrane accelerates bodies to at most this multiple of the highest speed before, and never beyond the speed
 // that sub-steps can follow: a crushed membrane would explode.
 constexpr float kMostThrown = 4.0F;
-// Largest delay of an impact.
-constexpr float kMostLateMm = 0.5F;
+// A hull turns by at most this in a sub-step, rad, as long as there are not too many.
+constexpr float kMostTurnRad = 0.1F;
 
 // Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
@@ -80,6 +78,7 @@ void IslandSolver::gather(World const& world, DiskContacts const& contacts, Isla
     contacts_.clear();
     pair_count_ = 0;
     membranes_.clear();
+    hulls_.clear();
     for (std::uint32_t i = island.first_membrane; i != kNone; i = islands.next_membranes()[i]) {
         Membrane const& membrane = world.membranes[i];
         auto const first = static_cast<std::uint32_t>(movers_.size());
@@ -91,9 +90,13 @@ void IslandSolver::gather(World const& world, DiskContacts const& contacts, Isla
     for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
         std::uint32_t const index = islands.links()[link].contact;
         NearContact const& near = contacts.near()[index];
-        bool const is_pair = index < contacts.pair_count();
+        bool const is_pair = contacts.is_pair(index);
         std::uint32_t const a = mover_of(world, contacts, near.a);
         std::uint32_t const b = is_pair ? mover_of(world, contacts, near.b) : kStill;
+        if (index >= contacts.first_hull()) {
+            hulls_.add(world, contacts, index, a, b, movers_);
+            continue;
+        }
         Vec2 seam_mm;
         if (is_pair) {
             ++pair_count_;
@@ -345,12 +348,23 @@ void IslandSolver::keep_impulses(std::vector<float>& driven_impulse) const {
     }
 }
 
+/// With the turning of hulls, the speed of a corner.
 float IslandSolver::fastest_mm_s() const {
-    float fastest2 = 0.0F;
+    float const turn = hulls_.empty() ? 0.0F : 1.0F;
+    float fastest_mm_s = 0.0F;
     for (Mover const& mover : movers_) {
-        fastest2 = std::max(fastest2, squared_length(mover.velocity_mm_s));
+        fastest_mm_s = std::max(fastest_mm_s, length(mover.velocity_mm_s) +
+                                                  turn * std::abs(mover.angular_velocity_rad_s) * mover.radius_mm);
     }
-    return std::sqrt(fastest2);
+    return fastest_mm_s;
+}
+
+float IslandSolver::fastest_turn_rad_s() const {
+    float fastest_rad_s = 0.0F;
+    for (Mover const& mover : movers_) {
+        fastest_rad_s = std::max(fastest_rad_s, std::abs(mover.angular_velocity_rad_s));
+    }
+    return hulls_.empty() ? 0.0F : fastest_rad_s;
 }
 
 /// Returns whether any body was faster.
@@ -368,7 +382,8 @@ bool IslandSolver::limit_speeds(float most_mm_s) {
 
 /// Springs before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
-    for (int pass = 0; pass < kMostSoftPasses; ++pass) {
+    int const passes = hulls_.empty() ? kMostSoftPasses : kMostHullPasses;
+    for (int pass = 0; pass < passes; ++pass) {
         bool const backwards = pass % 2 == 0;
         float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -376,6 +391,7 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
             float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
             change_mm_s = std::max(change_mm_s, solve_contact(contact, demanded_mm_s));
         }
+        change_mm_s = std::max(change_mm_s, hulls_.solve(movers_, backwards, pushes));
         if (h_s * change_mm_s <= kConvergedMm) {
             return;
         }
@@ -383,11 +399,12 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
 }
 
 /// Returns whether some bodies overlap in the end.
-bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) {
+bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool is_driven) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     float const fastest_mm_s = this->fastest_mm_s();
     // No body moves further in a sub-step than membranes can hold back, see membrane_steps.hpp.
-    float const needed = std::ceil(fastest_mm_s * dt_s / most_motion_mm_);
+    float const needed =
+        std::ceil(std::max(fastest_mm_s * dt_s / most_motion_mm_, fastest_turn_rad_s() * dt_s / kMostTurnRad));
     auto const substeps =
         static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
     float const most_mm_s = std::min(kMostThrown * std::max(fastest_mm_s, kFastestPushMmS),
@@ -399,7 +416,14 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) 
         times.rest_s = static_cast<float>(substeps - substep) * h_s;
         bool const is_too_long = membranes_.begin_substep(movers_, h_s, times.push_rate);
         overlaps = measure(world, contacts, times).overlaps;
+        overlaps = hulls_.measure(contacts, movers_, times) || overlaps;
+        if (is_driven && substep == 0) {
+            hulls_.push_as_before(contacts, movers_);
+        }
         solve_velocities_softly(h_s, /*pushes=*/true);
+        if (is_driven && substep == 0) {
+            hulls_.keep_impulses(contacts);
+        }
         bool const is_limited = limit_speeds(most_mm_s);
         move(h_s);
         if (is_limited) {
@@ -414,8 +438,8 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts const& contacts) 
 bool IslandSolver::solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island,
                          bool is_driven) {
     gather(world, contacts, islands, island);
-    if (!membranes_.empty()) {
-        bool const overlaps = solve_soft(world, contacts);
+    if (!membranes_.empty() || !hulls_.empty()) {
+        bool const overlaps = solve_soft(world, contacts, is_driven);
         membranes_.keep_impulses(contacts.spring_impulse());
         scatter(world);
         return overlaps;

@@ -6,8 +6,8 @@
 // moved ("relaxation"), so that they add no energy: E. Catto, "Solver2D" (2024).
 //
 // The solver works on a contiguous copy of the bodies and contacts of the island, and solves a contact again only if
-// the velocity of one of its bodies has changed since. In an island with soft membranes, each iteration solves all
-// contacts and springs, and fast bodies have more sub-steps.
+// the velocity of one of its bodies has changed since. In an island with hulls or soft membranes, each iteration solves
+// all contacts and springs, and fast bodies have more sub-steps.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,11 @@
 
 #include "base/four.hpp"
 #include "physics/disk_contacts.hpp"
+#include "physics/hull_contacts.hpp"
 #include "physics/islands.hpp"
 #include "physics/mover.hpp"
 #include "physics/soft_membranes.hpp"
+#include "physics/substep.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -48,14 +50,6 @@ private:
         std::int32_t solved = 0;  // at which count of clock_; -1: not yet, and it has to be
     };
 
-    /// Length of a sub-step, and what follows from it.
-    struct Times {
-        float h_s;
-        float rest_s;     // left of the whole step
-        float per_h;      // 1/s
-        float push_rate;  // speed at which a soft constraint pushes, per mm of overlap, 1/s
-    };
-
     /// State of the contacts at the start of a sub-step.
     struct Survey {
         bool overlaps = false;
@@ -71,11 +65,10 @@ private:
         Four restitution;
     };
 
-    static constexpr std::uint32_t kStill = 0;
-
-    bool solve_soft(World const& world, DiskContacts const& contacts);
+    bool solve_soft(World const& world, DiskContacts& contacts, bool is_driven);
     void solve_velocities_softly(float h_s, bool pushes);
     float fastest_mm_s() const;
+    float fastest_turn_rad_s() const;
     bool limit_speeds(float most_mm_s);
     std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
     void gather(World const& world, DiskContacts const& contacts, Islands const& islands, Island const& island);
@@ -97,6 +90,7 @@ private:
     std::vector<Mover> movers_;  // the first one represents everything that is fixed
     std::vector<Contact> contacts_;
     std::uint32_t pair_count_ = 0;  // contacts between two movable bodies, which come first
+    HullContacts hulls_;
     SoftMembranes membranes_;
     float most_motion_mm_;  // in a sub-step, in worlds with membranes
 

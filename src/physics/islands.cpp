@@ -80,13 +80,32 @@ void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach
     }
 }
 
+void Islands::find_hulls(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange hulls,
+                         std::vector<Close>& found) {
+    auto const dt_s = static_cast<float>(world.time_step_s);
+    Bodies const& bodies = world.bodies;
+    // At most the speed of a point of a body.
+    auto const speed_mm_s = [&](std::uint32_t body) {
+        return length(bodies.velocity_mm_s[body]) +
+               std::abs(bodies.angular_velocity_rad_s[body]) * bodies.radius_mm[body];
+    };
+    for (std::uint32_t i = hulls.first; i < hulls.last; ++i) {
+        auto const [a, b, law] = contacts.near()[i];
+        float const gap_mm = contacts.gap_of_hull_mm(world, i);
+        float const closing_mm = dt_s * (speed_mm_s(a) + (contacts.is_pair(i) ? speed_mm_s(b) : 0.0F));
+        if (gap_mm < std::max(reach.reach_mm, closing_mm)) {
+            found.push_back({.contact = i, .meets = gap_mm + kContactToleranceMm < closing_mm});
+        }
+    }
+}
+
 /// Turns the close contacts into links, and joins the trees of their bodies.
 void Islands::unite(DiskContacts const& contacts) {
     for (std::vector<Close> const& found : close_) {
         for (Close const& close : found) {
             links_.push_back({.contact = close.contact, .next = kNone});
             meets_.push_back(close.meets ? 1 : 0);
-            if (close.contact < contacts.pair_count()) {
+            if (contacts.is_pair(close.contact)) {
                 std::uint32_t const root_a = root_of(contacts.near()[close.contact].a);
                 std::uint32_t const root_b = root_of(contacts.near()[close.contact].b);
                 parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
@@ -143,7 +162,7 @@ void Islands::mark_bodies(DiskContacts const& contacts) {
         NearContact const& near = contacts.near()[links_[i].contact];
         if (islands_[island_[parent_[near.a]]].is_active) {
             has_contact_[near.a] = 1;
-            if (links_[i].contact < contacts.pair_count()) {
+            if (contacts.is_pair(links_[i].contact)) {
                 has_contact_[near.b] = 1;
             }
         }
@@ -172,9 +191,12 @@ void Islands::find(World const& world, DiskContacts const& contacts, Reach const
         found.clear();
         WorkRange pairs = range;
         WorkRange fixed = range;
+        WorkRange hulls = range;
         pairs.last = fixed.first = std::clamp(contacts.pair_count(), range.first, range.last);
+        fixed.last = hulls.first = std::clamp(contacts.first_hull(), range.first, range.last);
         find_pairs(world, contacts, reach, pairs, found);
         find_fixed(world, contacts, reach, fixed, found);
+        find_hulls(world, contacts, reach, hulls, found);
     });
     unite(contacts);
     link(contacts);

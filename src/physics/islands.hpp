@@ -62,6 +62,8 @@ private:
                            std::vector<Close>& found);
     static void find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,
                            std::vector<Close>& found);
+    static void find_hulls(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange hulls,
+                           std::vector<Close>& found);
     void unite(DiskContacts const& contacts);
     void link(DiskContacts const& contacts);
     void link_membranes(World const& world, Reach const& reach);

@@ -7,6 +7,9 @@
 
 namespace pogosim {
 
+/// The mover that represents everything that is fixed.
+inline constexpr std::uint32_t kStill = 0;
+
 struct Mover {
     Vec2 position_mm;
     Vec2 velocity_mm_s;

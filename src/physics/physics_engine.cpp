@@ -60,11 +60,12 @@ std::string why_unfit(std::string const& name, World const& world, bool has_box2
         return fmt::format("is not there: this simulator was built without Box2D 2.4; use {}", kAutomaticEngine);
     }
     if (is_missing) {
-        return fmt::format("has no engine for it: disk {}, and this simulator was built without Box2D 2.4; use disks",
-                           no_disks);
+        return fmt::format(
+            "has no engine for it: disk {}, and this simulator was built without Box2D 2.4; use type: membrane",
+            no_disks);
     }
     std::string const reason = engine.why_unfit(world);
-    return reason.empty() ? "" : fmt::format("{}; use {}", reason, has_box2d ? "auto or box2d" : "disks");
+    return reason.empty() ? "" : fmt::format("{}; use {}", reason, has_box2d ? "auto or box2d" : "type: membrane");
 }
 
 std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, World const& world, WallSpec const& walls,

@@ -59,7 +59,7 @@ std::string const& physics_engine_behind(std::string const& name, World const& w
 /// Whether the simulator is built with Box2D.
 bool has_box2d_engine();
 
-/// Why this engine cannot move what is in the world, and what can: "moves disks only, but ...; use auto or box2d".
+/// Why this engine cannot move what is in the world, and what can: "does not move ...; use auto or box2d".
 /// Empty if it can.
 std::string why_unfit(std::string const& name, World const& world, bool has_box2d = has_box2d_engine());
 

@@ -12,13 +12,6 @@ Vec2 unit_vector(WallEdge const& edge) {
     return far > 0.0F ? (1.0F / far) * way : Vec2{1.0F, 0.0F};
 }
 
-/// Distance from the edge, from either side.
-float distance(WallSide const& side, Vec2 point_mm) {
-    Vec2 const offset = point_mm - side.from_mm;
-    float const t = std::clamp(dot(offset, side.along), 0.0F, side.length_mm);
-    return length(offset - t * side.along);
-}
-
 WallSides sides_of(WallIndex const& walls) {
     WallSides sides;
     for (WallEdge const& edge : walls.edges()) {
@@ -35,6 +28,12 @@ WallSides sides_of(WallIndex const& walls) {
 }
 
 }  // namespace
+
+float distance_to(WallSide const& side, Vec2 point_mm) {
+    Vec2 const offset = point_mm - side.from_mm;
+    float const t = std::clamp(dot(offset, side.along), 0.0F, side.length_mm);
+    return length(offset - t * side.along);
+}
 
 std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm) {
     Vec2 const offset = point_mm - side.from_mm;
@@ -70,7 +69,7 @@ void WallNeighbourList::build(World const& world, WallIndex const& walls, float 
         Vec2 const place_mm = bodies.position_mm[body];
         found_.clear();
         walls.for_each_near(place_mm, reach_mm, [&](WallEdge const& edge) {
-            if (distance(side(edge.number), place_mm) < reach_mm &&
+            if (distance_to(side(edge.number), place_mm) < reach_mm &&
                 std::ranges::find(found_, edge.number) == found_.end()) {
                 found_.push_back(edge.number);
             }

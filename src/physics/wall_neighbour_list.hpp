@@ -37,6 +37,9 @@ struct Gap {
 /// is on one side of a thin wall cannot touch its other side.
 std::optional<Gap> gap_to(WallSide const& side, Vec2 point_mm);
 
+/// Distance from the edge, from either side.
+float distance_to(WallSide const& side, Vec2 point_mm);
+
 using WallSides = std::vector<WallSide>;
 
 class WallNeighbourList {

@@ -230,27 +230,28 @@ TEST_P(Motion, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
 POGOSIM_FOR_EACH_ENGINE(Motion);
 
 TEST(WhyUnfit, NamesWhatCannotMoveAndWhatCan) {
-    World disks = square_world();
-    add_robot(disks, {500, 500});
     World boxes = square_world();
     ObjectSpec box = body(0.5F);
     box.shape = {.kind = ShapeKind::rectangle, .width_mm = 50, .height_mm = 20};
     add_robot(boxes, {500, 500}, 0.0F, box);
-    boxes.objects.push_back({.body = 0, .body_count = 1});
-    std::string const moves_disks = "moves disks only, but 'robots' has another shape and can move";
+    boxes.objects = {{.body = 0, .body_count = 1}};
+    World segments = boxes;
+    segments.objects = {{.body = 0, .body_count = 2}};
+    std::string const moves_none = "does not move membranes of segments ('robots')";
 
     for (bool const has_box2d : {true, false}) {
-        EXPECT_EQ(why_unfit("auto", disks, has_box2d), "");
-        EXPECT_EQ(why_unfit("disk", disks, has_box2d), "");
+        EXPECT_EQ(why_unfit("auto", boxes, has_box2d), "");
+        EXPECT_EQ(why_unfit("disk", boxes, has_box2d), "");
     }
-    EXPECT_EQ(why_unfit("box2d", disks, true), "");
-    EXPECT_EQ(why_unfit("box2d", disks, false), "is not there: this simulator was built without Box2D 2.4; use auto");
-    EXPECT_EQ(why_unfit("auto", boxes, true), "");
-    EXPECT_EQ(why_unfit("disk", boxes, true), moves_disks + "; use auto or box2d");
-    EXPECT_EQ(why_unfit("disk", boxes, false), moves_disks + "; use disks");
+    EXPECT_EQ(why_unfit("box2d", boxes, true), "");
+    EXPECT_EQ(why_unfit("box2d", boxes, false), "is not there: this simulator was built without Box2D 2.4; use auto");
+    EXPECT_EQ(why_unfit("auto", segments, true), "");
+    EXPECT_EQ(why_unfit("disk", segments, true), moves_none + "; use auto or box2d");
+    EXPECT_EQ(why_unfit("disk", segments, false), moves_none + "; use type: membrane");
     for (std::string const name : {"auto", "box2d"}) {
-        EXPECT_EQ(why_unfit(name, boxes, false), "has no engine for it: disk " + moves_disks +
-                                                     ", and this simulator was built without Box2D 2.4; use disks");
+        EXPECT_EQ(why_unfit(name, segments, false),
+                  "has no engine for it: disk " + moves_none +
+                      ", and this simulator was built without Box2D 2.4; use type: membrane");
     }
 }
 

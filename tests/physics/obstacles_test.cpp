@@ -5,7 +5,7 @@
 
 #include "base/random.hpp"
 #include "geometry/polygon.hpp"
-#include "physics/fixed_polygons.hpp"
+#include "physics/hulls.hpp"
 #include "physics/physics_engine.hpp"
 #include "support/each_engine.hpp"
 #include "support/small_world.hpp"
@@ -67,11 +67,11 @@ protected:
     }
 };
 
-TEST(FixedPolygons, AreAsFarAsTheirOutlinesFromEveryPoint) {
+TEST(Hulls, AreAsFarAsTheirOutlinesFromEveryPoint) {
     World world = testing::square_world();
     std::uint32_t const rectangle = add_obstacle(world, {300, 400}, 0.7F, bar(200, 30));
     std::uint32_t const wedge = add_obstacle(world, {700, 500}, -2.0F, triangle(150));
-    FixedPolygons const polygons(world);
+    Hulls const polygons(world);
     RandomStream random(7, 0);
     for (int i = 0; i < 2000; ++i) {
         std::uint32_t const body = i % 2 == 0 ? rectangle : wedge;

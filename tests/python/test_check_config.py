@@ -193,7 +193,10 @@ def test_all_mistakes_are_told_at_once_each_with_its_line(tmp_path: Path) -> Non
         ({"save_video_period": 1, "frames_name": "f.png"}, "frames_name"),
         ({"save_video_period": 1, "frames_name": "f{:.0f}.jpg"}, "frames_name"),
         (
-            {"physics_engine": "disk", "objects.robots.geometry": "triangle", "objects.robots.radius": None},
+            {
+                "physics_engine": "disk",
+                "objects.rings": {"type": "rectmembrane", "nb": 1, "geometry": "disk", "radius": 100},
+            },
             "physics_engine",
         ),
         ({"chessboard_distance_between_neighbors": 0}, "chessboard_distance_between_neighbors"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pytest
 from pogosim.utils import load_dataframe
 from running import Run, example, run
 
@@ -37,35 +36,66 @@ def test_crowd_of_the_disk_engine_keeps_apart_and_in_its_arena_with_equal_bytes(
         assert np.hypot(*(places - arena_radius_mm).T).max() < arena_radius_mm - RADIUS_MM + 1.5
 
 
-SHAPES = pytest.mark.parametrize(
-    ("settings", "reason"),
-    [
-        ({"objects.bars": {"type": "passive_object", "nb": 1, "geometry": "rectangle", "body_width": 50,
-                           "body_height": 20, "x": 300, "y": 300}}, "'bars' has another shape and can move"),
-        ({"objects.rings": {"type": "rectmembrane", "nb": 1, "geometry": "disk", "radius": 200, "x": 500, "y": 500}},
-         "'rings' is a membrane of segments"),
-    ],
-)  # fmt: skip
+RINGS: dict[str, object] = {
+    "objects.rings": {"type": "rectmembrane", "nb": 1, "geometry": "disk", "radius": 200, "x": 500, "y": 500}
+}
+BARS: dict[str, object] = {
+    "objects.bars": {"type": "passive_object", "nb": 1, "geometry": "rectangle", "body_width": 50, "body_height": 20,
+                     "x": 300, "y": 300}
+}  # fmt: skip
 
 
-@SHAPES
-def test_disk_engine_refuses_what_is_no_disk(tmp_path: Path, settings: dict[str, object], reason: str) -> None:
-    result = run(example("run_and_tumble"), tmp_path, {"physics_engine": "disk", **settings})
+def test_robots_push_a_bar_across_the_seam_with_equal_bytes(tmp_path: Path) -> None:
+    settings: dict[str, object] = {
+        **BARS,
+        "boundary_condition": "periodic",
+        "arena_file": "arenas/square.csv",
+        "arena_surface": 2.5e5,
+        "objects.robots.nb": 40,
+        "simulation_time": 60.0,
+        "save_data_period": 1.0,
+    }
+    results = []
+    for threads in (1, 2):
+        (tmp_path / str(threads)).mkdir()
+        result = run(example("run_and_tumble"), tmp_path / str(threads), {**settings, "threads": threads})
+        assert result.code == 0, result.text
+        results.append(result)
+    rows, metadata = load_dataframe(results[0].folder / "data.feather")
+    assert metadata["resolved_configuration"]["physics_engine"] == "disk"
+    assert rows.equals(load_dataframe(results[1].folder / "data.feather")[0])
+    bar = rows[rows["robot_category"] == "bars"]
+    assert np.ptp(bar["angle"]) > 0.1
+    # It was pushed, and no robot stands in it.
+    assert len(bar[["x", "y"]].drop_duplicates()) > 10
+    size_mm = np.sqrt(settings["arena_surface"])  # type: ignore[call-overload]
+    for time, frame in rows[rows["time"] > 0].groupby("time"):
+        (x, y, angle) = bar[bar["time"] == time][["x", "y", "angle"]].to_numpy()[0]
+        way = (frame[frame["robot_category"] == "robots"][["x", "y"]].to_numpy() - (x, y) + size_mm / 2) % size_mm
+        way -= size_mm / 2
+        along = np.abs(way @ (np.cos(angle), np.sin(angle)))
+        across = np.abs(way @ (-np.sin(angle), np.cos(angle)))
+        gap = np.hypot(np.maximum(along - 25, 0), np.maximum(across - 10, 0)) - RADIUS_MM
+        assert gap.min() > -0.5, time
+
+
+def test_disk_engine_refuses_membranes_of_segments(tmp_path: Path) -> None:
+    result = run(example("run_and_tumble"), tmp_path, {"physics_engine": "disk", **RINGS})
     line = next(
         number
         for number, text in enumerate((tmp_path / "scene.yaml").read_text().splitlines(), 1)
         if text.startswith("physics_engine")
     )
-    expected = f"Error: scene.yaml:{line}: physics_engine: disk moves disks only, but {reason}; use auto or box2d\n"
-    assert (result.code, result.errors) == (2, expected)
+    reason = "disk does not move membranes of segments ('rings'); use auto or box2d"
+    assert (result.code, result.errors) == (2, f"Error: scene.yaml:{line}: physics_engine: {reason}\n")
 
 
-@SHAPES
-def test_automatic_choice_of_box2d_is_explained(tmp_path: Path, settings: dict[str, object], reason: str) -> None:
-    short = {"simulation_time": 0.1, "arena_file": "arenas/square.csv", **settings}
+def test_automatic_choice_of_box2d_is_explained(tmp_path: Path) -> None:
+    short = {"simulation_time": 0.1, "arena_file": "arenas/square.csv"}
     for boundary, more in (("solid", ""), ("periodic", "; bodies do not meet across the borders of the arena")):
-        result = run(example("run_and_tumble"), tmp_path, {**short, "boundary_condition": boundary})
+        result = run(example("run_and_tumble"), tmp_path, {**short, **RINGS, "boundary_condition": boundary})
         assert result.code == 0, result.text
         (line,) = [line for line in result.output.splitlines() if "physics_engine: " in line]
-        assert line.endswith(f"[info] physics_engine: box2d, since disk moves disks only, but {reason}{more}")
-    assert "physics_engine: " not in run(example("run_and_tumble"), tmp_path, {"simulation_time": 0.1}).output
+        reason = "since disk does not move membranes of segments ('rings')"
+        assert line.endswith(f"[info] physics_engine: box2d, {reason}{more}")
+    assert "physics_engine: " not in run(example("run_and_tumble"), tmp_path, {**short, **BARS}).output

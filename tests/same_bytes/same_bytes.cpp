@@ -110,6 +110,18 @@ World crowd(Arena const& arena, std::size_t count) {
     return world;
 }
 
+/// The same with boxes and wedges among them.
+World mixture(Arena const& arena, std::size_t count) {
+    World world = crowd(arena, count);
+    for (std::uint32_t i = 3; i < count; i += 5) {
+        Shape& shape = world.bodies.shape[i];
+        shape = i % 2 == 0 ? Shape{.kind = ShapeKind::triangle, .side_length_mm = 45.0F}
+                           : Shape{.kind = ShapeKind::rectangle, .width_mm = 45.0F, .height_mm = 20.0F};
+        world.bodies.radius_mm[i] = bounding_radius(shape);
+    }
+    return world;
+}
+
 /// Robots in soft membranes that push each other.
 World membranes() {
     World world = testing::square_world();
@@ -242,6 +254,10 @@ int main(int count, char** arguments) {
     World torus = crowd(arena_of("square", 1.2e6), 250);
     torus.periodic = true;
     move("crowd periodic", std::move(torus));
+    move("boxes and wedges", mixture(arena_of("annulus", 1.5e6), 250));
+    World mixed_torus = mixture(arena_of("square", 1.2e6), 250);
+    mixed_torus.periodic = true;
+    move("boxes and wedges periodic", std::move(mixed_torus));
     move("membranes", membranes());
     talk("messages article", {.law = ReceptionLaw::article}, false);
     talk("messages power", four_parameter_law(), true);

@@ -1,0 +1,276 @@
+#include "physics/hull.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+namespace pogosim {
+
+namespace {
+
+// A side of `a` stays the reference until one of `b` is further out by this, so that touches keep their features.
+constexpr float kPreferenceMm = 0.01F;
+// Touches that lie closer together than this are one.
+constexpr float kSamePlaceMm = 0.01F;
+
+/// The side of a hull from which another one is furthest away. Without sides: minus infinity.
+struct Furthest {
+    float distance_mm = -std::numeric_limits<float>::max();  // between the polygons, without the rounding
+    std::uint32_t side = 0;
+};
+
+/// A straight line with ends.
+struct Line {
+    Vec2 from_mm;
+    Vec2 to_mm;
+};
+
+Line side_of(Hull const& hull, std::uint32_t side) {
+    return {hull.corner_mm[side], hull.next_corner_mm(side)};
+}
+
+float lowest(Hull const& hull, Vec2 from_mm, Vec2 up) {
+    float lowest_mm = std::numeric_limits<float>::max();
+    for (std::uint32_t k = 0; k < hull.count; ++k) {
+        lowest_mm = std::min(lowest_mm, dot(hull.corner_mm[k] - from_mm, up));
+    }
+    return lowest_mm;
+}
+
+Furthest furthest_from_side(Hull const& of, Hull const& other) {
+    Furthest furthest;
+    for (std::uint32_t i = 0; i < of.count && of.count > 1; ++i) {
+        float const distance_mm = lowest(other, of.corner_mm[i], of.outwards[i]);
+        if (distance_mm > furthest.distance_mm) {
+            furthest = {distance_mm, i};
+        }
+    }
+    return furthest;
+}
+
+/// The side of a hull that faces against `normal` most.
+std::uint32_t side_against(Hull const& hull, Vec2 normal) {
+    std::uint32_t best = 0;
+    for (std::uint32_t k = 1; k < hull.count; ++k) {
+        if (dot(hull.outwards[k], normal) < dot(hull.outwards[best], normal)) {
+            best = k;
+        }
+    }
+    return best;
+}
+
+/// Where a side (the reference) and another one (incident) touch. `normal`: unit vector out of the reference.
+struct Sides {
+    Line reference{};
+    Line incident{};
+    Vec2 normal;
+    float reference_radius_mm = 0.0F;
+    float incident_radius_mm = 0.0F;
+    std::uint32_t features = 0;
+
+    float radius_mm() const { return reference_radius_mm + incident_radius_mm; }
+};
+
+/// A touch at a point of the incident side which is `height_mm` above the reference.
+Touch touch_at(Sides const& sides, Vec2 point_mm, float height_mm, std::uint32_t end) {
+    float const down_mm = 0.5F * (height_mm + sides.incident_radius_mm - sides.reference_radius_mm);
+    return {.point_mm = point_mm - down_mm * sides.normal,
+            .gap_mm = height_mm - sides.radius_mm(),
+            .features = sides.features << 1U | end};
+}
+
+void add(Touches& touches, Touch const& touch, float reach_mm) {
+    bool const is_known =
+        touches.count == 1 && squared_length(touches.touch[0].point_mm - touch.point_mm) < kSamePlaceMm * kSamePlaceMm;
+    if (touch.gap_mm < reach_mm && !is_known) {
+        touches.touch[touches.count++] = touch;
+    }
+}
+
+/// The part of the incident side above the reference; none if it is beside it. The normal of the touches is that of
+/// the sides.
+std::optional<Touches> clipped(Sides const& sides, float reach_mm) {
+    Vec2 const way_mm = sides.reference.to_mm - sides.reference.from_mm;
+    float const length_mm = length(way_mm);
+    Vec2 const along = {-sides.normal.y, sides.normal.x};  // the reference runs clockwise
+    Vec2 const from_mm = sides.incident.from_mm - sides.reference.from_mm;
+    Vec2 const to_mm = sides.incident.to_mm - sides.reference.from_mm;
+    float const from = dot(from_mm, along);
+    float const to = dot(to_mm, along);
+    if (std::max(from, to) < -kSamePlaceMm || std::min(from, to) > length_mm + kSamePlaceMm) {
+        return std::nullopt;
+    }
+    Touches touches{.normal = sides.normal};
+    auto const add_end = [&](float at, std::uint32_t end) {
+        float const held = std::clamp(at, 0.0F, length_mm);
+        float const share = from == to ? static_cast<float>(end) : std::clamp((held - from) / (to - from), 0.0F, 1.0F);
+        Vec2 const point_mm = from_mm + share * (to_mm - from_mm);
+        add(touches, touch_at(sides, sides.reference.from_mm + point_mm, dot(point_mm, sides.normal), end), reach_mm);
+    };
+    add_end(from, 0);
+    add_end(to, 1);
+    return touches;
+}
+
+struct Closest {
+    Vec2 reference_mm;
+    Vec2 incident_mm;
+    float distance_mm2 = std::numeric_limits<float>::max();
+};
+
+/// The two ends that are closest to each other.
+Closest closest_ends(Line const& reference, Line const& incident) {
+    Closest closest;
+    for (Vec2 const r : {reference.from_mm, reference.to_mm}) {
+        for (Vec2 const i : {incident.from_mm, incident.to_mm}) {
+            float const distance_mm2 = squared_length(i - r);
+            if (distance_mm2 < closest.distance_mm2) {
+                closest = {r, i, distance_mm2};
+            }
+        }
+    }
+    return closest;
+}
+
+float distance_mm2(Line const& line, Vec2 point_mm) {
+    Vec2 const way_mm = line.to_mm - line.from_mm;
+    float const length_mm2 = squared_length(way_mm);
+    float const share =
+        length_mm2 > 0.0F ? std::clamp(dot(point_mm - line.from_mm, way_mm) / length_mm2, 0.0F, 1.0F) : 0.0F;
+    return squared_length(point_mm - line.from_mm - share * way_mm);
+}
+
+/// From the corners of a hull to the nearest side of another one.
+float from_corners_mm2(Hull const& corners, Hull const& sides) {
+    float nearest_mm2 = std::numeric_limits<float>::max();
+    for (std::uint32_t i = 0; i < corners.count; ++i) {
+        for (std::uint32_t k = 0; k < sides.count; ++k) {
+            nearest_mm2 = std::min(nearest_mm2, distance_mm2(side_of(sides, k), corners.corner_mm[i]));
+        }
+    }
+    return nearest_mm2;
+}
+
+/// The touch of two corners; none if an end of one side is closer to the middle of the other one, or above its end.
+std::optional<Touches> of_corners(Sides sides, float reach_mm) {
+    Closest const closest = closest_ends(sides.reference, sides.incident);
+    constexpr float kRounding = 1.0F - 1e-5F;
+    float const to_sides_mm2 = std::min(
+        {distance_mm2(sides.reference, sides.incident.from_mm), distance_mm2(sides.reference, sides.incident.to_mm),
+         distance_mm2(sides.incident, sides.reference.from_mm), distance_mm2(sides.incident, sides.reference.to_mm)});
+    Vec2 const along{-sides.normal.y, sides.normal.x};
+    bool const is_above = std::abs(dot(closest.incident_mm - closest.reference_mm, along)) < kSamePlaceMm;
+    if (is_above || to_sides_mm2 < kRounding * closest.distance_mm2) {
+        return std::nullopt;
+    }
+    float const distance_mm = std::sqrt(closest.distance_mm2);
+    sides.normal = (1.0F / distance_mm) * (closest.incident_mm - closest.reference_mm);
+    Touches touches{.normal = sides.normal};
+    add(touches, touch_at(sides, closest.incident_mm, distance_mm, 0), reach_mm);
+    return touches;
+}
+
+/// `is_apart`: the polygons do not overlap.
+Touches touches_between(Sides const& sides, bool is_apart, float reach_mm) {
+    if (is_apart) {
+        if (std::optional<Touches> const corners = of_corners(sides, reach_mm)) {
+            return *corners;
+        }
+    }
+    if (std::optional<Touches> const faces = clipped(sides, reach_mm)) {
+        return *faces;
+    }
+    return {};
+}
+
+/// The directions that a corner of a wall pushes to lie between the normals of its two edges.
+bool pushes_from_corner(WallSide const& side, Vec2 normal) {
+    return side.has_corner && dot(normal, side.along) <= 0.0F && dot(normal, side.along_previous) >= 0.0F;
+}
+
+/// The touch of a wall's corner with the inside of a hull's side or with one of its corners.
+Touches touches_with_corner(Hull const& hull, WallSide const& side, float reach_mm) {
+    Hull corner{.count = 1};
+    corner.corner_mm[0] = side.from_mm;
+    Touches const touches = touches_of(hull, corner, reach_mm);
+    return pushes_from_corner(side, touches.normal) ? touches : Touches{};
+}
+
+}  // namespace
+
+Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead) {
+    Hull result;
+    result.count = hull.count;
+    result.radius_mm = hull.radius_mm;
+    for (std::uint32_t k = 0; k < hull.count; ++k) {
+        result.corner_mm[k] = place_mm + rotate(hull.corner_mm[k], ahead);
+        result.outwards[k] = rotate(hull.outwards[k], ahead);
+    }
+    return result;
+}
+
+Touches touches_of(Hull const& a, Hull const& b, float reach_mm) {
+    assert(a.count > 1 || b.count > 1);
+    Furthest const from_a = furthest_from_side(a, b);
+    Furthest const from_b = furthest_from_side(b, a);
+    bool const is_of_a = from_a.distance_mm + kPreferenceMm >= from_b.distance_mm;
+    Furthest const& furthest = is_of_a ? from_a : from_b;
+    if (furthest.distance_mm >= reach_mm + a.radius_mm + b.radius_mm) {
+        return {};
+    }
+    Hull const& reference = is_of_a ? a : b;
+    Hull const& incident = is_of_a ? b : a;
+    Vec2 const normal = reference.outwards[furthest.side];
+    std::uint32_t const against = side_against(incident, normal);
+    Sides const sides{.reference = side_of(reference, furthest.side),
+                      .incident = side_of(incident, against),
+                      .normal = normal,
+                      .reference_radius_mm = reference.radius_mm,
+                      .incident_radius_mm = incident.radius_mm,
+                      .features = (is_of_a ? 1U : 0U) | furthest.side << 1U | against << 4U};
+    Touches touches = touches_between(sides, furthest.distance_mm > 0.0F, reach_mm);
+    if (is_of_a) {
+        touches.normal = -touches.normal;
+    }
+    return touches;
+}
+
+Touches touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm) {
+    Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
+    float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
+    Furthest const from_hull = [&] {
+        Hull corner{.count = 1};
+        corner.corner_mm[0] = side.from_mm;
+        return furthest_from_side(hull, corner);
+    }();
+    if (side.has_corner && from_hull.distance_mm > above_edge_mm + kPreferenceMm &&
+        pushes_from_corner(side, -hull.outwards[from_hull.side])) {
+        return touches_with_corner(hull, side, reach_mm);
+    }
+    if (dot(centre_mm - side.from_mm, side.normal) < 0.0F || above_edge_mm >= reach_mm + hull.radius_mm) {
+        return {};
+    }
+    std::uint32_t const against = side_against(hull, side.normal);
+    // Free space is on the right of an edge, and on the left of a hull's side.
+    Sides const sides{.reference = {to_mm, side.from_mm},
+                      .incident = side_of(hull, against),
+                      .normal = side.normal,
+                      .reference_radius_mm = 0.0F,
+                      .incident_radius_mm = hull.radius_mm,
+                      .features = against};
+    if (std::optional<Touches> const faces = clipped(sides, reach_mm)) {
+        return *faces;
+    }
+    return side.has_corner ? touches_with_corner(hull, side, reach_mm) : Touches{};
+}
+
+float gap_between_mm(Hull const& a, Hull const& b) {
+    assert(a.count > 1 || b.count > 1);
+    float const deepest_mm = std::max(furthest_from_side(a, b).distance_mm, furthest_from_side(b, a).distance_mm);
+    float const apart_mm =
+        deepest_mm > 0.0F ? std::sqrt(std::min(from_corners_mm2(a, b), from_corners_mm2(b, a))) : deepest_mm;
+    return apart_mm - a.radius_mm - b.radius_mm;
+}
+
+}  // namespace pogosim
