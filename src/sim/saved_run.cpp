@@ -43,8 +43,11 @@ std::unique_ptr<SavedRun> Simulation::save() {
         throw ConfigError(fmt::format("the state of this run cannot be saved: its physics engine ({}) cannot be copied",
                                       physics_engine_behind(scenario_.physics_engine, world_)));
     }
-    auto saved = std::make_unique<SavedRun>(
-        SavedRun{.world = world_, .lighting = lighting_, .physics = std::move(physics), .brains = {}});
+    auto saved = std::make_unique<SavedRun>(SavedRun{.world = world_,
+                                                     .lighting = lighting_,
+                                                     .physics = std::move(physics),
+                                                     .brains = {},
+                                                     .stop_requested = services_.stop_requested});
     for (auto const& brain : brains_) {
         saved->brains.push_back(brain->save());
     }
@@ -60,7 +63,7 @@ void Simulation::restore(SavedRun const& saved) {
     for (std::size_t i = 0; i < brains_.size(); ++i) {
         brains_[i]->restore(*saved.brains[i]);
     }
-    services_.stop_requested = false;
+    services_.stop_requested = saved.stop_requested;
     if (observed_motions_) {
         observed_motions_->update(world_);
     }

@@ -17,6 +17,7 @@ struct SavedRun {
     Lighting lighting;
     std::unique_ptr<PhysicsEngine> physics;
     std::vector<std::unique_ptr<SavedBrain>> brains;  // of Simulation::brains()
+    bool stop_requested = false;                      // the program has asked for the end of the run
 };
 
 }  // namespace pogosim

@@ -270,6 +270,23 @@ def test_run_that_is_over_goes_on_again(tmp_path: Path) -> None:
         assert simulation.run() == 100
 
 
+def test_run_that_its_program_has_ended_is_over_again(tmp_path: Path) -> None:
+    program = program_of(tmp_path, "if (current_time_milliseconds() >= 300) { stop_simulation(); }")
+    with Simulation(program, scene_of(tmp_path)) as simulation:
+        before = simulation.save()
+        steps = simulation.run()
+        assert simulation.is_over
+        over = simulation.save()
+        for _ in range(2):
+            simulation.restore(before)
+            assert not simulation.is_over
+            assert simulation.run() == steps
+            simulation.restore(before)
+            simulation.restore(over)
+            assert simulation.is_over
+            assert simulation.step(5) == 0
+
+
 # ---- What is refused
 
 
