@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
@@ -33,6 +35,9 @@ std::filesystem::path path_of_model(Place const& place, std::filesystem::path co
         fail_at(place, fmt::format("there is no file '{}'{}. Bundled models: models/pogobot_wheels.yaml, "
                                    "models/pogobot_brushes.yaml, ...",
                                    shown(place.node.scalar), found.searched));
+    }
+    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
+        fail_at(place, fmt::format("'{}' is a folder; expected a YAML file", shown(place.node.scalar)));
     }
     return found.path;
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "config/find_file.hpp"
 
 namespace pogosim {
@@ -16,6 +19,9 @@ WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading&
     FoundFile const found = search_file(reading.configuration, place.node.scalar);
     if (found.path.empty()) {
         fail_at(place, fmt::format("there is no file '{}'{}", shown(place.node.scalar), found.searched));
+    }
+    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
+        fail_at(place, fmt::format("'{}' is a folder; expected a YAML file", shown(place.node.scalar)));
     }
     Node const content = read_yaml_file(found.path.string());
     reading.object_files.push_back({found.path, file.name});

@@ -180,6 +180,12 @@ TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
     EXPECT_NE(warnings.text().find("'faces'"), std::string::npos);
 }
 
+TEST(RobotModel, FolderInPlaceOfAFileIsRefusedWithItsLine) {
+    EXPECT_NE(error_in("    robot_model: .\n").find("'.' is a folder; expected a YAML file"), std::string::npos);
+    EXPECT_NE(error_in("    robot_model: .\n").find("objects.robots.robot_model"), std::string::npos);
+    EXPECT_NE(error_in("    function_costs: .\n").find("'.' is a folder; expected a YAML file"), std::string::npos);
+}
+
 TEST(RobotModel, WrongPartsAreRefused) {
     EXPECT_EQ(error_in("    faces: [1]\n"), "x.yaml:6: objects.robots.faces.0: expected a map of keys, found 1");
     EXPECT_NE(error_in("    faces: {angle_deg: 0}\n").find("expected a list of maps"), std::string::npos);
