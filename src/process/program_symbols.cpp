@@ -21,11 +21,14 @@ bool ProgramSymbols::has_guard(std::string const& symbol) const {
 }
 
 std::string name_by_symbol(std::string const& symbol) {
-    int status = 0;
-    std::unique_ptr<char, void (*)(void*)> const demangled(
-        abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
-    if (demangled != nullptr) {
-        return demangled.get();
+    // Other names would be taken for types: "t" is unsigned short.
+    if (symbol.starts_with("_Z")) {
+        int status = 0;
+        std::unique_ptr<char, void (*)(void*)> const demangled(
+            abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
+        if (demangled != nullptr) {
+            return demangled.get();
+        }
     }
     std::size_t const dot = symbol.find('.');
     bool const is_numbered =
@@ -170,6 +173,9 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
     ProgramSymbols found;
     ElfFile const file = elf_file(bytes);
     found.memory = memory_of_robots(file);
+    for (Elf64_Phdr const& segment : file.segments) {
+        found.bytes_of_threads += segment.p_type == PT_TLS ? segment.p_memsz : 0;
+    }
     for (Elf64_Shdr const& section : file.sections) {
         if (section.sh_type == SHT_SYMTAB) {
             found.are_known = true;

@@ -171,7 +171,7 @@ public:
     };
     Saved save();
     void restore(Saved const& saved);
-    std::string const& why_not_saved() const;
+    std::string why_not_saved() const;
 
     /// Bytes of one robot's user data.
     std::size_t user_data_bytes() const { return image_.user_data_bytes; }
@@ -240,6 +240,7 @@ private:
     std::vector<bool> is_warned_;               // of them, for each category
     std::vector<std::span<std::byte>> own_variables_;
     mutable std::optional<std::string> why_not_saved_;  // once it has been asked for
+    mutable std::string calls_back_;                    // function_that_calls_back(), then
     std::unique_ptr<RobotMemory> own_memory_;           // copies: of each robot, and of the global step
     struct MainArguments {
         std::string name;

@@ -1,7 +1,12 @@
 // The state of the user's program on all robots, to go on from it later in the same process: variables, user data, the
 // stacks of robots that wait in the middle, and what the simulator keeps for each.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "process/program_bytes.hpp"
 #include "robot/controllers.hpp"
+#include "robot/shared_state.hpp"
 
 namespace pogosim {
 
@@ -59,9 +64,18 @@ void Controllers::restore(Saved const& saved) {
     next_look_us_ = 0;
 }
 
-std::string const& Controllers::why_not_saved() const {
+std::string Controllers::why_not_saved() const {
     if (!why_not_saved_) {
         why_not_saved_ = why_state_is_not_copied(image_);
+        calls_back_ = image_.main != nullptr ? function_that_calls_back(image_) : "";
+    }
+    // It may wait in a comparison of qsort(), whose copy of the values is on the heap.
+    bool const waits = std::ranges::any_of(controllers_, [](Controller const& self) { return self.fiber != nullptr; });
+    if (why_not_saved_->empty() && waits && !calls_back_.empty()) {
+        return fmt::format(
+            "a robot waits in the middle of a program that uses '{}', which may keep values in memory "
+            "that is not copied: save when none waits",
+            calls_back_);
     }
     return *why_not_saved_;
 }

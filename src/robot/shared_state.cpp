@@ -143,6 +143,18 @@ bool is_harmless_name(std::string_view name) {
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
 }
 
+constexpr auto kNamelessOfThreads = "each thread has its own variables (thread_local), whose symbols were stripped";
+
+/// Whether there are variables of threads that the symbol table does not have: the linker leaves out local symbols with
+/// -Wl,-x.
+bool has_nameless_variables_of_threads(ProgramSymbols const& symbols) {
+    std::size_t named = 0;
+    for (ProgramSymbols::Variable const& variable : symbols.variables) {
+        named += variable.is_of_thread ? variable.bytes : 0;
+    }
+    return symbols.bytes_of_threads > named;
+}
+
 /// As malloc() and its relatives do, and operator new.
 bool allocates(std::string_view name) {
     return name == "malloc" || name == "calloc" || name == "realloc" || name == "aligned_alloc" ||
@@ -225,6 +237,9 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
                                    : "put it into USERDATA, or declare it const");
         }
     }
+    if (has_nameless_variables_of_threads(symbols)) {
+        return kNamelessOfThreads;
+    }
     for (std::string const& name : symbols.imports) {
         if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state that all robots share", name);
@@ -251,13 +266,31 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
         return fmt::format("each thread has its own '{}' (thread_local), which is not copied",
                            name_by_symbol(found->name));
     }
+    if (has_nameless_variables_of_threads(symbols)) {
+        return fmt::format("{}, which are not copied", kNamelessOfThreads);
+    }
     for (std::string const& name : symbols.imports) {
         if (allocates(name)) {
             return fmt::format("the program allocates memory ('{}'), which is not copied: use arrays of a fixed size",
                                name_by_symbol(name));
         }
+        // Its %m allocates a text, which the program gives back.
+        bool const may_allocate =
+            name.ends_with("sscanf") && std::ranges::find(symbols.imports, "free") != symbols.imports.end();
+        if (may_allocate) {
+            return fmt::format("the program may allocate memory ('{}' with 'free'), which is not copied", name);
+        }
         if (!leaves_no_state(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state of its own", name_by_symbol(name));
+        }
+    }
+    return "";
+}
+
+std::string function_that_calls_back(ProgramImage const& image) {
+    for (std::string const& name : image.symbols().imports) {
+        if (name == "qsort" || name == "bsearch") {
+            return name;
         }
     }
     return "";

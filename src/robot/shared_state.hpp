@@ -21,6 +21,10 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
 /// program and in user data, and not in memory that it allocates, nor in a library that it calls.
 std::string why_state_is_not_copied(ProgramImage const& image);
 
+/// A function of the C library that the program uses, and that calls the program's own code while it keeps values in
+/// memory of its own, as qsort() may; empty: there is none.
+std::string function_that_calls_back(ProgramImage const& image);
+
 /// Variables of the program that its code may change, in the memory of which robots may have their own copies, and of
 /// which nothing is set from the configuration. Empty where that is not known.
 std::vector<ProgramSymbols::Variable> variables_of_all_robots(ProgramImage const& image,

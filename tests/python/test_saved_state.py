@@ -358,6 +358,46 @@ def test_programs_in_cpp_whose_state_is_elsewhere_are_refused(
             simulation.save()
 
 
+@pytest.mark.parametrize(
+    ("flags", "said"), [((), r"its own 't' \(thread_local\)"), (("-Wl,-x",), "whose symbols were stripped")]
+)
+def test_variables_of_threads_are_refused_by_any_name(flags: tuple[str, ...], said: str, tmp_path: Path) -> None:
+    source = text("mydata->count += (uint32_t)++t;", "", "static __thread int t;")
+    program = compile_text(tmp_path, source, flags=(*SHARED, *flags))
+    with Simulation(program, scene_of(tmp_path)) as simulation, pytest.raises(ConfigurationError, match=said):
+        simulation.save()
+
+
+def test_robot_that_waits_in_a_comparison_is_not_saved(tmp_path: Path) -> None:
+    """qsort() of the C library sorts in memory that it has allocated."""
+    globals_ = """static int order(void const* a, void const* b) {
+        msleep(1);
+        return *(int const*)a - *(int const*)b;
+    }"""
+    step = "int values[400] = {3, 1}; qsort(values, 400, sizeof(int), order);"
+    with Simulation(program_of(tmp_path, step, "", globals_), scene_of(tmp_path)) as simulation:
+        simulation.step(20)
+        with pytest.raises(ConfigurationError, match="a robot waits in the middle of a program that uses 'qsort'"):
+            simulation.save()
+
+
+def test_programs_that_sort_go_on(tmp_path: Path) -> None:
+    globals_ = "static int order(void const* a, void const* b) { return *(int const*)a - *(int const*)b; }"
+    step = "int v[3] = {rand() % 9, rand() % 9, 4}; qsort(v, 3, sizeof(int), order); mydata->count += (uint32_t)v[1];"
+    with Simulation(program_of(tmp_path, step, "", globals_), scene_of(tmp_path)) as simulation:
+        expect_same_course(simulation)
+
+
+def test_texts_of_scanf_are_refused(tmp_path: Path) -> None:
+    step = 'char* word = NULL; if (sscanf("a b", "%ms", &word) == 1) { free(word); }'
+    program = program_of(tmp_path, step, "", "#include <stdio.h>")
+    with (
+        Simulation(program, scene_of(tmp_path)) as simulation,
+        pytest.raises(ConfigurationError, match=r"may allocate memory \('.*sscanf' with 'free'\)"),
+    ):
+        simulation.save()
+
+
 def test_objects_of_cpp_without_a_heap_go_on(tmp_path: Path) -> None:
     source = """#include "pogobase.h"
     struct USERDATA { int n; };
