@@ -22,6 +22,7 @@ from types import ModuleType
 
 try:
     import analysis_tour
+    import blocked
     import compass
     import extras
     import first_program
@@ -57,6 +58,7 @@ SCRIPTS: dict[str, ModuleType] = {
     script.__name__: script
     for script in (
         analysis_tour,
+        blocked,
         compass,
         extras,
         first_program,

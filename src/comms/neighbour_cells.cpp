@@ -83,6 +83,13 @@ void NeighbourCells::note_change(std::uint32_t robot) {
     }
 }
 
+void NeighbourCells::note_change_near(Vec2 centre, float radius_mm) {
+    cells_.any_near(centre, radius_mm, [&](std::size_t cell) {
+        mark(cell);
+        return false;
+    });
+}
+
 void NeighbourCells::note_change_everywhere() {
     changes_ = changes_before_ + 1;
     changed_everywhere_ = changes_;

@@ -23,6 +23,8 @@ public:
 
     /// Notes a change of this robot on which its neighbours depend.
     void note_change(std::uint32_t robot);
+    /// Notes a change within a disk, which may lie anywhere.
+    void note_change_near(Vec2 centre, float radius_mm);
     /// Notes a change on which any robot may depend.
     void note_change_everywhere();
 

@@ -14,10 +14,6 @@ constexpr float kPieceMm = 50.0F;  // longer edges are cut into pieces of about 
 
 }  // namespace
 
-float squared_distance(OutlineIndex::Piece const& piece, Vec2 point) {
-    return squared_length(point - nearest_on_segment(piece.from, piece.to, point));
-}
-
 void OutlineIndex::add(Polygon const& polygon, std::uint32_t outline) {
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         Vec2 const from = polygon[i];

@@ -44,7 +44,4 @@ private:
     UniformGrid grid_;
 };
 
-/// Distance from a point to a piece, squared.
-float squared_distance(OutlineIndex::Piece const& piece, Vec2 point);
-
 }  // namespace pogosim

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "base/counted.hpp"
 #include "base/memory.hpp"
@@ -23,6 +25,32 @@ constexpr Vec2 in_frame_of(Vec2 v, Vec2 axis) {
 std::uint32_t outline_of(World const& world, std::uint32_t robot) {
     auto const found = std::ranges::lower_bound(world.outlines, robot, {}, &Outline::robot);
     return static_cast<std::uint32_t>(found - world.outlines.begin());
+}
+
+/// Those of the emitters (bit d: emitter d) before which no blocker stands: neither between the sender's centre and the
+/// emitter, which may have got into a body a little, nor from there to the target, if there is one. All relative to the
+/// sender's centre.
+unsigned without_blocked(unsigned emitters, Faces const& faces, Vec2 axis, NearbyBlockers const& blockers,
+                         std::optional<Vec2> target_mm = std::nullopt) {
+    if (blockers.empty()) {
+        return emitters;
+    }
+    unsigned open = 0;
+    for (unsigned left = emitters; left != 0; left &= left - 1) {
+        Vec2 const place = rotate(faces.place_mm[static_cast<unsigned>(std::countr_zero(left))], axis);
+        if (!(target_mm ? blockers.block(place, *target_mm) : blockers.block({}, place))) {
+            open |= left & -left;
+        }
+    }
+    return open;
+}
+
+/// Whether a blocker stands between a robot's centre and a point of an outline, relative to it. One at the point itself
+/// does not, such as the wall that sends.
+bool is_hidden(Vec2 point, NearbyBlockers const& blockers) {
+    constexpr float kAtMm = 0.1F;
+    float const distance_mm = length(point);
+    return distance_mm > kAtMm && blockers.block({}, (1.0F - kAtMm / distance_mm) * point);
 }
 
 }  // namespace
@@ -70,6 +98,7 @@ void Visibility::start(World const& world) {
         }
     }
     cells_.start(world, longest_range_mm + 2.0F * largest_radius_mm_);
+    blockers_.start(world);
     cache_.clear(world.robots.size());
     switched_off_ = world.switched_off;
 }
@@ -80,6 +109,7 @@ void Visibility::update(World const& world) {
                               .outlines = world.outlines.size(),
                               .periodic = world.periodic,
                               .ignore_occlusions = world.ignore_occlusions,
+                              .walls_block_infrared = world.walls_block_infrared,
                               .original_wall_copies = world.original_wall_copies};
     if (structure != structure_) {
         structure_ = structure;
@@ -88,6 +118,7 @@ void Visibility::update(World const& world) {
     }
     cells_.update(world);
     note_switched(world);
+    blockers_.update(world, cells_);
     allocate_for([&] { return fmt::format("the outlines of {} walls and membranes", world.outlines.size()); },
                  std::nullopt,
                  [&] {
@@ -159,7 +190,9 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
                            Search& search, std::vector<Receiver>& receivers) const {
     auto const first = static_cast<std::ptrdiff_t>(receivers.size());
     if (senders_[robot].body != kNone) {
-        add_robots_in_view(world, robot, emitters, range_mm, search.view, receivers);
+        blockers_.find_near(world, world.bodies.position_mm[senders_[robot].body],
+                            search_radius_mm(senders_[robot], range_mm), search.blockers);
+        add_robots_in_view(world, robot, emitters, range_mm, search, receivers);
         if (!all_hear_around_) {
             leave_out_deaf(world, range_mm, static_cast<std::size_t>(first), receivers);
         }
@@ -170,7 +203,7 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
                   [](Receiver const& a, Receiver const& b) { return a.robot < b.robot; });
     } else if ((emitters & 1U) != 0) {
         bool const repeats = world.original_wall_copies && emitters != kAllFaces;
-        add_robots_near(world, outline_of(world, robot), range_mm, repeats, search.pieces, receivers);
+        add_robots_near(world, outline_of(world, robot), range_mm, repeats, search, receivers);
     }
     if (!world.switched_off.empty()) {
         receivers.erase(std::remove_if(receivers.begin() + first, receivers.end(),
@@ -180,12 +213,13 @@ void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t
 }
 
 void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                                    EmitterView& view, std::vector<Receiver>& receivers) const {
+                                    Search& search, std::vector<Receiver>& receivers) const {
     Sender const& sender = senders_[robot];
     Vec2 const centre = world.bodies.position_mm[sender.body];
     Vec2 const axis = world.bodies.heading_dir[sender.body];
     Faces const& faces = faces_[sender.faces];
     float const rim_range_mm = faces.reach_mm + range_mm;
+    EmitterView& view = search.view;
     view.clear();
     cells_.for_each_run_near(
         centre, search_radius_mm(sender, range_mm), [&](std::span<NeighbourCells::Neighbour const> neighbours) {
@@ -197,8 +231,9 @@ void Visibility::add_robots_in_view(World const& world, std::uint32_t robot, std
                 view.add_if(is_near & (other.robot != robot), other.robot, in_frame_of(offset, axis), other.radius_mm);
             }
         });
-    for (EmitterView::Candidate const& seen :
-         view.look(emitters & faces.all, faces, range_mm, world.ignore_occlusions)) {
+    unsigned const open = without_blocked(emitters & faces.all, faces, axis, search.blockers);
+    for (EmitterView::Candidate seen : view.look(open, faces, range_mm, world.ignore_occlusions)) {
+        seen.emitters = without_blocked(seen.emitters, faces, axis, search.blockers, rotate(seen.offset_mm, axis));
         if (seen.emitters != 0) {
             receivers.push_back({.robot = seen.robot,
                                  .from_emitter_mm = rotate(from_nearest_emitter_mm(seen, faces), axis),
@@ -243,7 +278,11 @@ void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std:
         Vec2 const place = rotate(faces.place_mm[emitter], world.bodies.heading_dir[body]);
         for (OutlineIndex::Piece const& piece : search.pieces) {
             std::uint8_t& reached = search.outline_emitters[piece.outline];
-            if ((reached & bit) == 0 && squared_distance(piece, place) <= range_mm * range_mm) {
+            if ((reached & bit) != 0) {
+                continue;
+            }
+            Vec2 const point = nearest_on_segment(piece.from, piece.to, place);
+            if (squared_length(place - point) <= range_mm * range_mm && !is_hidden(point, search.blockers)) {
                 reached = static_cast<std::uint8_t>(reached | bit);
             }
         }
@@ -261,29 +300,37 @@ void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std:
 std::optional<Vec2> Visibility::to_outline(World const& world, std::uint32_t robot, std::uint32_t outline_robot,
                                            float radius_mm) {
     std::uint32_t const outline = outline_of(world, outline_robot);
+    Vec2 const centre_mm = world.bodies.position_mm[world.robots.body[robot]];
+    outlines_.find_near(world, centre_mm, radius_mm, search_.pieces);
+    blockers_.find_near(world, centre_mm, radius_mm, search_.blockers);
     std::optional<Vec2> nearest;
-    outlines_.find_near(world, world.bodies.position_mm[world.robots.body[robot]], radius_mm, search_.pieces);
+    std::pair best{true, radius_mm * radius_mm};  // hidden, squared distance
     for (OutlineIndex::Piece const& piece : search_.pieces) {
         Vec2 const point = nearest_on_segment(piece.from, piece.to, {});
-        bool const is_nearest = piece.outline == outline && squared_length(point) <= radius_mm * radius_mm &&
-                                (!nearest || squared_length(point) < squared_length(*nearest));
-        if (is_nearest) {
+        if (piece.outline != outline || squared_length(point) > radius_mm * radius_mm) {
+            continue;
+        }
+        std::pair const rank{is_hidden(point, search_.blockers), squared_length(point)};
+        if (!nearest || rank < best) {
             nearest = point;
+            best = rank;
         }
     }
     return nearest;
 }
 
 std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
-                                    std::vector<OutlineIndex::Piece>& pieces) const {
+                                    Search& search) const {
     std::uint32_t const body = world.robots.body[robot];
     Faces const& faces = faces_[senders_[robot].faces];
     unsigned hearing = 0;
-    outlines_.find_near(world, world.bodies.position_mm[body], faces.reach_mm + range_mm, pieces);
-    for (OutlineIndex::Piece const& piece : pieces) {
+    outlines_.find_near(world, world.bodies.position_mm[body], faces.reach_mm + range_mm, search.pieces);
+    blockers_.find_near(world, world.bodies.position_mm[body], faces.reach_mm + range_mm, search.blockers);
+    for (OutlineIndex::Piece const& piece : search.pieces) {
         for (unsigned face = 0; piece.outline == outline && (faces.all >> face) != 0; ++face) {
             Vec2 const place = rotate(faces.place_mm[face], world.bodies.heading_dir[body]);
-            if (squared_distance(piece, place) <= range_mm * range_mm) {
+            Vec2 const point = nearest_on_segment(piece.from, piece.to, place);
+            if (squared_length(place - point) <= range_mm * range_mm && !is_hidden(point, search.blockers)) {
                 hearing |= 1U << face;
             }
         }
@@ -292,7 +339,7 @@ std::uint8_t Visibility::faces_near(World const& world, std::uint32_t robot, std
 }
 
 void Visibility::add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats,
-                                 std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const {
+                                 Search& search, std::vector<Receiver>& receivers) const {
     Box const& box = outlines_.box(outline);
     Vec2 const middle = box.centre();
     Vec2 const half = 0.5F * box.size();
@@ -305,7 +352,7 @@ void Visibility::add_robots_near(World const& world, std::uint32_t outline, floa
         if (std::abs(offset.x) > half.x + margin_mm || std::abs(offset.y) > half.y + margin_mm) {
             continue;
         }
-        if (std::uint8_t const faces = faces_near(world, robot, outline, both_range_mm, pieces); faces != 0) {
+        if (std::uint8_t const faces = faces_near(world, robot, outline, both_range_mm, search); faces != 0) {
             int const times = repeats ? static_cast<int>(count_of_four(faces)) : 1;
             receivers.insert(receivers.end(), static_cast<std::size_t>(times),
                              {.robot = robot, .faces = faces, .emitters = 1, .is_along_outline = true});

@@ -3,6 +3,10 @@
 //
 // Walls and membranes send and receive along their whole outline instead: only the distance from the outline to the
 // robot's faces counts; there are no cones and no shadows.
+//
+// Blockers (infrared_blockers.hpp) then take away what they stand before: a robot if they cross the line from the
+// sender's centre to the emitter, or on from there to the receiver's centre; a point of an outline if they cross the
+// line from the robot's centre to it.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +17,7 @@
 
 #include "comms/emitter_view.hpp"
 #include "comms/faces.hpp"
+#include "comms/infrared_blockers.hpp"
 #include "comms/neighbour_cells.hpp"
 #include "comms/outline_index.hpp"
 #include "comms/receiver_cache.hpp"
@@ -25,6 +30,7 @@ public:
     /// Scratch memory of one search.
     struct Search {
         EmitterView view;
+        NearbyBlockers blockers;
         std::vector<OutlineIndex::Piece> pieces;
         std::vector<std::uint8_t> outline_emitters;  // by outline: bit d: emitter d reaches it
     };
@@ -56,7 +62,7 @@ public:
     std::uint8_t faces_of(World const& world, Receiver const& receiver, float range_mm) const;
 
     /// Vector from the centre of `robot`, which has a body, to the nearest point of the outline of `outline_robot`
-    /// within `radius_mm`. None: there is no such point.
+    /// within `radius_mm`, one that no blocker hides if there is any. None: there is no such point.
     std::optional<Vec2> to_outline(World const& world, std::uint32_t robot, std::uint32_t outline_robot,
                                    float radius_mm);
 
@@ -74,6 +80,7 @@ private:
         std::size_t outlines = 0;
         bool periodic = false;
         bool ignore_occlusions = false;
+        bool walls_block_infrared = false;
         bool original_wall_copies = false;
 
         friend bool operator==(Structure const&, Structure const&) = default;
@@ -85,13 +92,13 @@ private:
     void find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
                    std::vector<Receiver>& receivers) const;
     void add_robots_in_view(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                            EmitterView& view, std::vector<Receiver>& receivers) const;
+                            Search& search, std::vector<Receiver>& receivers) const;
     void add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                            Search& search, std::vector<Receiver>& receivers) const;
-    void add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats,
-                         std::vector<OutlineIndex::Piece>& pieces, std::vector<Receiver>& receivers) const;
+    void add_robots_near(World const& world, std::uint32_t outline, float range_mm, bool repeats, Search& search,
+                         std::vector<Receiver>& receivers) const;
     std::uint8_t faces_near(World const& world, std::uint32_t robot, std::uint32_t outline, float range_mm,
-                            std::vector<OutlineIndex::Piece>& pieces) const;
+                            Search& search) const;
     /// Radius around a sender's centre that contains the centres of all robots that it may reach.
     float search_radius_mm(Sender const& sender, float range_mm) const {
         return faces_[sender.faces].reach_mm + range_mm + largest_radius_mm_;
@@ -116,6 +123,7 @@ private:
     ReceiverCache cache_;
     std::vector<std::uint32_t> switched_off_;  // robots, at the last update
     OutlineIndex outlines_;
+    InfraredBlockers blockers_;
     Search search_;
     std::vector<Receiver> found_;
 };

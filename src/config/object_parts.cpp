@@ -38,6 +38,16 @@ std::span<Key<BodySpec> const> body_keys() {
     return keys;
 }
 
+std::span<Key<BodySpec> const> blocking_keys() {
+    using K = Key<BodySpec>;
+    static std::array const keys{
+        K{"blocks_infrared", &BodySpec::blocks_infrared, any(), "",
+          "No message passes the object. A membrane blocks along the line through its bodies."}
+            .only_if([](BodySpec const& body) { return body.blocks_infrared; }),
+    };
+    return keys;
+}
+
 std::span<Key<IrSpec> const> ir_keys() {
     using K = Key<IrSpec>;
     static std::array const keys{
@@ -225,6 +235,10 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     BodySpec& body = object.spec.body.emplace();
     reader.read(body_keys(), body);
     body.density = std::max(body.density, kLeastDensity);
+}
+
+void read_blocking(MapReader& reader, ObjectConfig& object) {
+    reader.read(blocking_keys(), *object.spec.body);
 }
 
 void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model) {

@@ -15,6 +15,9 @@ void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Sh
 /// `body_*`: makes the object tangible.
 void read_body(MapReader& reader, ObjectConfig& object);
 
+/// `blocks_infrared` of an object whose body has been read.
+void read_blocking(MapReader& reader, ObjectConfig& object);
+
 /// Motors, sensors, infrared: the object runs user code. `model`: what objects of this type have.
 void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model = {});
 

@@ -109,6 +109,9 @@ std::span<Key<WallSpec> const> wall_keys() {
         K{"wall_friction", &WallSpec::friction, between(0, 1000), "", "Coulomb friction coefficient of the walls."},
         K{"wall_restitution", &WallSpec::restitution, between(0, kMostRestitution), "",
           "Coefficient of restitution of the walls; above 1, they add energy."},
+        K{"walls_block_infrared", &WallSpec::block_infrared, any(), "",
+          "No message passes the walls: the outline of the arena and its holes."}
+            .only_if([](WallSpec const& walls) { return walls.block_infrared; }),
     };
     return keys;
 }

@@ -79,6 +79,7 @@ void read_membrane_object(MapReader& reader, ObjectConfig& object, bool segments
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_robot(reader, object, outline_model());
     read_body(reader, object);
+    read_blocking(reader, object);
     MembraneSpec& membrane = object.spec.membrane.emplace();
     membrane.segments = segments;
     if (segments) {
@@ -108,6 +109,7 @@ void read_active_object(MapReader& reader, ObjectConfig& object) {
 void read_passive_object(MapReader& reader, ObjectConfig& object) {
     read_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_body(reader, object);
+    read_blocking(reader, object);
     read_placement(reader, object);
     read_colormap(reader, object);
 }

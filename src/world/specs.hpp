@@ -27,6 +27,7 @@ struct BodySpec {
     float friction = 0.3F;         // Coulomb coefficient; two bodies: geometric mean
     float restitution = 0.5F;      // 0 to 1; two bodies: the larger
     bool fixed = false;            // never moves
+    bool blocks_infrared = false;  // messages do not pass
 
     friend bool operator==(BodySpec const&, BodySpec const&) = default;
 };
@@ -36,8 +37,9 @@ inline constexpr float kMostBounceMmS = 10000.0F;
 
 /// The walls of a solid arena.
 struct WallSpec {
-    float friction = 0.05F;    // Coulomb coefficient
-    float restitution = 0.5F;  // 0 to 1; above 1, walls add energy
+    float friction = 0.05F;       // Coulomb coefficient
+    float restitution = 0.5F;     // 0 to 1; above 1, walls add energy
+    bool block_infrared = false;  // messages do not pass
 };
 
 enum class ReceptionLaw {

@@ -136,6 +136,36 @@ TEST(KeptReceivers, KnowOfWallsAndOfMembranesThatMove) {
     }
 }
 
+TEST(KeptReceivers, KnowOfBlockersThatMove) {
+    for (bool const periodic : {false, true}) {
+        RandomStream random(6, periodic ? 1 : 0);
+        World world = world_of(150, periodic, random);
+        ObjectSpec spec;
+        spec.body = BodySpec{.blocks_infrared = true};
+        for (int i = 0; i < 60; ++i) {
+            bool const is_disk = i % 2 == 0;
+            spec.shape = {.kind = is_disk ? ShapeKind::disk : ShapeKind::rectangle,
+                          .radius_mm = random.uniform(5, 40),
+                          .width_mm = random.uniform(5, 200),
+                          .height_mm = random.uniform(2, 20)};
+            testing::add_body(world, {random.uniform(0, kSide), random.uniform(0, kSide)}, random.uniform(-kPi, kPi),
+                              spec);
+        }
+        Visibility known;
+        for (int step = 0; step < 200; ++step) {
+            // Robots move rarely.
+            std::uint32_t const body = random.below(8) == 0 ? random.below(150) : 150 + random.below(60);
+            if (step % 3 == 0) {
+                Vec2 const place = step % 2 == 0 ? world.bodies.position_mm[body] + Vec2{random.uniform(-9, 9), 3.0F}
+                                                 : Vec2{random.uniform(0, kSide), random.uniform(0, kSide)};
+                set_pose(world.bodies, body, place, random.uniform(-kPi, kPi));
+            }
+            expect_same_answers(known, world, random);
+            ASSERT_FALSE(HasFatalFailure()) << "step " << step << ", periodic " << periodic;
+        }
+    }
+}
+
 /// Lists that grow leave holes in the cache's memory, until it gives up all; and some lists are too long for it.
 TEST(ReceiverCache, HasNothingOrWhatWasKeptHoweverMuchItForgets) {
     constexpr std::uint32_t kRobots = 10;

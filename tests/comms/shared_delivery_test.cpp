@@ -20,6 +20,7 @@ struct Swarm {
     bool is_periodic = false;
     bool moves = false;
     bool has_outlines = false;
+    bool has_blockers = false;
     float range_mm = 80.0F;
 };
 
@@ -47,6 +48,14 @@ World make_world(Swarm const& swarm) {
     }
     if (swarm.has_outlines) {
         testing::add_wall(world, world.arena.polygons);
+    }
+    if (swarm.has_blockers) {
+        ObjectSpec pillar;
+        pillar.shape.radius_mm = 15.0F;
+        pillar.body = BodySpec{.blocks_infrared = true};
+        for (int i = 0; i < 400; ++i) {
+            testing::add_body(world, {random.uniform(0.0F, kSideMm), random.uniform(0.0F, kSideMm)}, 0.0F, pillar);
+        }
     }
     return world;
 }
@@ -139,8 +148,10 @@ TEST(SharedDelivery, PartsHaveAboutTheSameSize) {
 }
 
 TEST(SharedDelivery, GivesAllRobotsTheSameMessagesWithAnyNumberOfWorkers) {
-    for (Swarm const& swarm : {Swarm{}, Swarm{.moves = true}, Swarm{.is_periodic = true, .moves = true},
-                               Swarm{.moves = true, .has_outlines = true}, Swarm{.range_mm = 900.0F}}) {
+    for (Swarm const& swarm :
+         {Swarm{}, Swarm{.moves = true}, Swarm{.is_periodic = true, .moves = true},
+          Swarm{.moves = true, .has_outlines = true}, Swarm{.moves = true, .has_outlines = true, .has_blockers = true},
+          Swarm{.range_mm = 900.0F}}) {
         Outcome const expected = delivered_by(1, swarm);
         ASSERT_GT(expected.receptions, 1000U);
         EXPECT_GT(std::ranges::max(expected.dropped), 0U);

@@ -47,6 +47,7 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(s.walls.friction, 0.05F);
     EXPECT_EQ(s.walls.restitution, 0.5F);
     EXPECT_FALSE(s.ignore_occlusions);
+    EXPECT_FALSE(s.walls.block_infrared);
     EXPECT_EQ(s.arena_temperature_c, 42.0);
     EXPECT_EQ(s.simulation_time_s, 100.0);
     EXPECT_EQ(s.time_step_s, 0.01);
@@ -158,6 +159,7 @@ arena_stretch: yes
 boundary_condition: periodic
 wall_friction: 0.1
 wall_restitution: 0.9
+walls_block_infrared: true
 communication_ignore_occlusions: true
 arena_temperature: 20
 simulation_time: 12.5
@@ -217,6 +219,7 @@ parameters: {any: thing}
     EXPECT_EQ(s.boundary, BoundaryCondition::periodic);
     EXPECT_EQ(s.walls.friction, 0.1F);
     EXPECT_EQ(s.walls.restitution, 0.9F);
+    EXPECT_TRUE(s.walls.block_infrared);
     EXPECT_TRUE(s.ignore_occlusions);
     EXPECT_EQ(s.arena_temperature_c, 20.0);
     EXPECT_EQ(s.simulation_time_s, 12.5);
@@ -880,6 +883,22 @@ TEST(Scenario, RefusesWrongBatteriesAndSensors) {
     Warnings const warnings;
     load(kRobots + "    battery: {capacity_mah: 250, idle_m: 3}\n");
     EXPECT_NE(warnings.text().find("did you mean 'idle_ma'?"), std::string::npos) << warnings.text();
+}
+
+TEST(Scenario, PassiveObjectsMembranesAndWallsMayBlockInfrared) {
+    for (std::string const type : {"passive_object", "membrane", "rectmembrane"}) {
+        Warnings const warnings;
+        std::string const thing = "  it:\n    type: " + type + "\n    geometry: disk\n    blocks_infrared: ";
+        EXPECT_TRUE(load(kRobots + thing + "true\n").objects.at(1).spec.body->blocks_infrared);
+        EXPECT_EQ(load_error(kRobots + thing + "maybe\n"),
+                  "x.yaml:9: objects.it.blocks_infrared: expected true or false, found 'maybe'");
+        EXPECT_EQ(warnings.text(), "");
+    }
+    EXPECT_EQ(load_error("walls_block_infrared: 2\n" + kRobots),
+              "x.yaml:1: walls_block_infrared: expected true or false, found 2");
+    // Robots hide each other anyway.
+    EXPECT_NE(load_error(kRobots + "    blocks_infrared: true\n", {.strict = true}).find("x.yaml:6: "),
+              std::string::npos);
 }
 
 TEST(Scenario, WallsThatAddEnergyGetAWarning) {

@@ -63,6 +63,16 @@ TEST(ValuesInUse, LeaveOutWhatMeansNothingInTheChosenMode) {
     EXPECT_FALSE(has(load("boundary_condition: periodic\nwall_friction: 0.5\n").source->values, "wall_friction"));
 }
 
+TEST(ValuesInUse, SayThatSomethingBlocksInfraredOnlyIfItDoes) {
+    EXPECT_FALSE(has(load("walls_block_infrared: false\n").source->values, "walls_block_infrared"));
+    EXPECT_TRUE(has(load("walls_block_infrared: true\n").source->values, "walls_block_infrared"));
+    for (std::string const value : {"false", "true"}) {
+        Scenario const scenario =
+            load(kRobots + "  it: {type: passive_object, geometry: disk, blocks_infrared: " + value + "}\n");
+        EXPECT_EQ(has(*find_path(scenario.source->values, "objects.it"), "blocks_infrared"), value == "true");
+    }
+}
+
 TEST(ValuesInUse, HoldTheParametersOfTheReceptionLawThatIsChosen) {
     auto const keys = [](std::string const& map) {
         return keys_of(*robots_of("    msg_success_rate: " + map + "\n").find("msg_success_rate"));
