@@ -8,11 +8,10 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
-#include "config/find_file.hpp"
+#include "config/value_or_file.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -27,19 +26,8 @@ constexpr std::array<std::string_view, 12> kNotOfModels{
     kKey,   "objects", "parameters"};
 
 std::filesystem::path path_of_model(Place const& place, std::filesystem::path const& configuration) {
-    if (place.node.kind != Node::Kind::scalar || place.node.scalar.empty()) {
-        fail_expected(place, "the name of a file, such as models/pogobot_wheels.yaml");
-    }
-    FoundFile const found = search_file(configuration, place.node.scalar);
-    if (found.path.empty()) {
-        fail_at(place, fmt::format("there is no file '{}'{}. Bundled models: models/pogobot_wheels.yaml, "
-                                   "models/pogobot_brushes.yaml, ...",
-                                   shown(place.node.scalar), found.searched));
-    }
-    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
-        fail_at(place, fmt::format("'{}' is a folder; expected a YAML file", shown(place.node.scalar)));
-    }
-    return found.path;
+    return path_of_yaml(place, configuration, "the name of a file, such as models/pogobot_wheels.yaml",
+                        ". Bundled models: models/pogobot_wheels.yaml, models/pogobot_brushes.yaml, ...");
 }
 
 Node read_model_file(std::string const& path) {

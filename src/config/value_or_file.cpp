@@ -9,22 +9,28 @@
 
 namespace pogosim {
 
-WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading) {
-    if (place.node.kind == Node::Kind::sequence || place.node.kind == Node::Kind::map) {
-        return {.node = place.node, .path = place.path};
-    }
+std::filesystem::path path_of_yaml(Place const& place, std::filesystem::path const& configuration,
+                                   std::string_view expected, std::string_view hint) {
     if (place.node.kind != Node::Kind::scalar || place.node.scalar.empty()) {
-        fail_expected(place, file.expected);
+        fail_expected(place, expected);
     }
-    FoundFile const found = search_file(reading.configuration, place.node.scalar);
+    FoundFile const found = search_file(configuration, place.node.scalar);
     if (found.path.empty()) {
-        fail_at(place, fmt::format("there is no file '{}'{}", shown(place.node.scalar), found.searched));
+        fail_at(place, fmt::format("there is no file '{}'{}{}", shown(place.node.scalar), found.searched, hint));
     }
     if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
         fail_at(place, fmt::format("'{}' is a folder; expected a YAML file", shown(place.node.scalar)));
     }
-    Node const content = read_yaml_file(found.path.string());
-    reading.object_files.push_back({found.path, file.name});
+    return found.path;
+}
+
+WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading) {
+    if (place.node.kind == Node::Kind::sequence || place.node.kind == Node::Kind::map) {
+        return {.node = place.node, .path = place.path};
+    }
+    std::filesystem::path const path = path_of_yaml(place, reading.configuration, file.expected);
+    Node const content = read_yaml_file(path.string());
+    reading.object_files.push_back({path, file.name});
     Node const* const value = content.find(file.key);
     if (value == nullptr || content.entries.size() != 1) {
         fail_at({content, std::string(file.key)}, std::string(file.content));

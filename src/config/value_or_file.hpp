@@ -1,6 +1,7 @@
 // Values that a configuration may also keep in a file of their own: `script: [...]`, or `script: dance.yaml`.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,11 @@ struct FileOfValue {
     std::string_view content;   // what is said of a file with something else
     char const* name;           // "the script"
 };
+
+/// The path of the YAML file that a configuration names, as search_file() finds it. Throws ConfigError at the place if
+/// it is no name (with what was `expected`), or names no file (with the `hint`) or a folder.
+std::filesystem::path path_of_yaml(Place const& place, std::filesystem::path const& configuration,
+                                   std::string_view expected, std::string_view hint = {});
 
 /// The value under a key, from the file that it names, which is noted in `reading`. Throws ConfigError.
 WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading);
