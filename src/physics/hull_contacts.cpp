@@ -15,6 +15,12 @@ Vec2 velocity_of(float spin_rad_s, Vec2 arm_mm) {
     return {-spin_rad_s * arm_mm.y, spin_rad_s * arm_mm.x};
 }
 
+/// Velocity of the end of an arm of `a` relative to that of an arm of `b`.
+Vec2 velocity_between(Mover const& a, Mover const& b, Vec2 arm_a_mm, Vec2 arm_b_mm) {
+    return a.velocity_mm_s + velocity_of(a.angular_velocity_rad_s, arm_a_mm) - b.velocity_mm_s -
+           velocity_of(b.angular_velocity_rad_s, arm_b_mm);
+}
+
 /// The inverse of the mass that a push along `way` at the ends of two arms has to move.
 float inverse_mass(Mover const& a, Mover const& b, Vec2 arm_a_mm, Vec2 arm_b_mm, Vec2 way) {
     float const lever_a_mm = cross(arm_a_mm, way);
@@ -124,8 +130,7 @@ bool HullContacts::measure(Contact& contact, Touches const& touches, std::span<M
         point = {.arm_a_mm = touch.point_mm - hulls_[contact.hull_a].place_mm,
                  .arm_b_mm = touch.point_mm - b_mm,
                  .features = touch.features};
-        Vec2 const velocity_mm_s = a.velocity_mm_s + velocity_of(a.angular_velocity_rad_s, point.arm_a_mm) -
-                                   b.velocity_mm_s - velocity_of(b.angular_velocity_rad_s, point.arm_b_mm);
+        Vec2 const velocity_mm_s = velocity_between(a, b, point.arm_a_mm, point.arm_b_mm);
         auto const [least, relaxed, latest] =
             demand_of(touch.gap_mm, dot(velocity_mm_s, touches.normal), contact.restitution, times);
         point.least_mm_s = least;
@@ -170,8 +175,7 @@ void HullContacts::keep_impulses(DiskContacts& contacts) const {
 float HullContacts::solve(Contact const& contact, Point& point, std::span<Mover> movers, bool pushes) {
     Mover& a = movers[contact.a];
     Mover& b = movers[contact.b];
-    Vec2 const velocity_mm_s = a.velocity_mm_s + velocity_of(a.angular_velocity_rad_s, point.arm_a_mm) -
-                               b.velocity_mm_s - velocity_of(b.angular_velocity_rad_s, point.arm_b_mm);
+    Vec2 const velocity_mm_s = velocity_between(a, b, point.arm_a_mm, point.arm_b_mm);
     float const speed_mm_s = dot(velocity_mm_s, contact.normal);
     float const demanded_mm_s = pushes ? point.least_mm_s : point.relaxed_mm_s;
     HullImpulse::Part const before = point.impulse;

@@ -359,12 +359,16 @@ float IslandSolver::fastest_mm_s() const {
     return fastest_mm_s;
 }
 
+/// Disks may turn as fast as they like.
 float IslandSolver::fastest_turn_rad_s() const {
+    if (hulls_.empty()) {
+        return 0.0F;
+    }
     float fastest_rad_s = 0.0F;
     for (Mover const& mover : movers_) {
         fastest_rad_s = std::max(fastest_rad_s, std::abs(mover.angular_velocity_rad_s));
     }
-    return hulls_.empty() ? 0.0F : fastest_rad_s;
+    return fastest_rad_s;
 }
 
 /// Returns whether any body was faster.
