@@ -12,6 +12,7 @@
 
 #include "base/random.hpp"
 #include "comms/visibility.hpp"
+#include "support/shapes.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
@@ -20,6 +21,8 @@ namespace {
 using testing::add_membrane;
 using testing::add_robot;
 using testing::add_wall;
+using testing::disk;
+using testing::rectangle;
 using testing::square_world;
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -40,14 +43,6 @@ Robots reached(World const& world, std::uint32_t robot, std::uint8_t emitters, f
         result.push_back(receiver.robot);
     }
     return result;
-}
-
-Shape disk(float radius_mm) {
-    return {.kind = ShapeKind::disk, .radius_mm = radius_mm};
-}
-
-Shape rectangle(float width_mm, float height_mm) {
-    return {.kind = ShapeKind::rectangle, .width_mm = width_mm, .height_mm = height_mm};
 }
 
 /// A passive object that blocks. Add it after all robots.

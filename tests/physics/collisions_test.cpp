@@ -10,14 +10,18 @@
 
 #include "physics/physics_engine.hpp"
 #include "support/each_engine.hpp"
+#include "support/shapes.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::disk;
 using testing::make_engine;
+using testing::rectangle;
 using testing::square_world;
+using testing::triangle;
 
 class Collisions : public testing::EachEngine {};
 class Mass : public testing::EachEngine {};
@@ -26,18 +30,6 @@ class Shapes : public testing::EachEngine {};
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kToleranceMm = 0.55F;  // the engine's, and a step
 constexpr Vec2 kMiddle{1000.0F, 1000.0F};
-
-Shape disk(float radius_mm) {
-    return {.kind = ShapeKind::disk, .radius_mm = radius_mm};
-}
-
-Shape rectangle(float width_mm, float height_mm) {
-    return {.kind = ShapeKind::rectangle, .width_mm = width_mm, .height_mm = height_mm};
-}
-
-Shape triangle(float side_mm) {
-    return {.kind = ShapeKind::triangle, .side_length_mm = side_mm};
-}
 
 /// A world whose steps are so short that bodies collide where they touch.
 World fine_world() {

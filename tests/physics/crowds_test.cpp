@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/random.hpp"
+#include "support/crowd_measures.hpp"
 #include "support/each_engine.hpp"
 #include "support/small_world.hpp"
 
@@ -14,6 +15,9 @@ namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::deepest_overlap_mm;
+using testing::energy;
+using testing::extremes_in;
 using testing::make_engine;
 using testing::square_world;
 
@@ -47,29 +51,6 @@ World packed(int columns, int rows, float coverage, float restitution) {
         }
     }
     return world;
-}
-
-double energy(World const& world) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-        double const r = world.bodies.radius_mm[i];
-        double const w = world.bodies.angular_velocity_rad_s[i];
-        sum += r * r * (squared_length(world.bodies.velocity_mm_s[i]) + 0.5 * r * r * w * w);
-    }
-    return sum;
-}
-
-float deepest_overlap_mm(World const& world) {
-    float deepest = 0.0F;
-    Bodies const& bodies = world.bodies;
-    for (std::size_t a = 0; a < bodies.size(); ++a) {
-        deepest = std::max(deepest, bodies.radius_mm[a] - world.arena.distance_to_walls(bodies.position_mm[a]));
-        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
-            float const reach = bodies.radius_mm[a] + bodies.radius_mm[b];
-            deepest = std::max(deepest, reach - length(bodies.position_mm[b] - bodies.position_mm[a]));
-        }
-    }
-    return deepest;
 }
 
 /// Whatever the speed: from a hundredth of a radius in a step to four diameters.
@@ -124,13 +105,7 @@ TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
         }
         auto const engine = make_engine(world, {.friction = 0.0F, .restitution = restitution});
         double const before = energy(world);
-        double highest = 0.0;
-        float deepest_mm = 0.0F;
-        for (int step = 0; step < 500; ++step) {
-            engine->advance(world);
-            highest = std::max(highest, energy(world));
-            deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
-        }
+        auto const [highest, deepest_mm] = extremes_in(world, *engine, 500);
         EXPECT_LT(deepest_mm, is_disk_engine() ? 0.5F : 2.5F) << restitution;
         EXPECT_LT(highest, 1.001 * before) << restitution;
         if (restitution == 1.0F) {

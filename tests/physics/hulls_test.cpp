@@ -12,15 +12,24 @@
 
 #include "base/random.hpp"
 #include "geometry/wall_index.hpp"
+#include "support/crowd_measures.hpp"
 #include "support/each_engine.hpp"
+#include "support/shapes.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::add_robot;
+using testing::deepest_overlap_mm;
+using testing::disk;
+using testing::energy;
+using testing::extremes_in;
+using testing::hull_at;
 using testing::make_engine;
+using testing::rectangle;
 using testing::square_world;
+using testing::triangle;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -29,35 +38,12 @@ protected:
     bool is_ours() const { return GetParam() == "disk"; }
 };
 
-Shape disk(float radius_mm) {
-    return {.kind = ShapeKind::disk, .radius_mm = radius_mm};
-}
-
-Shape rectangle(float width_mm, float height_mm) {
-    return {.kind = ShapeKind::rectangle, .width_mm = width_mm, .height_mm = height_mm};
-}
-
-Shape triangle(float side_mm) {
-    return {.kind = ShapeKind::triangle, .side_length_mm = side_mm};
-}
-
 std::uint32_t add(World& world, Shape const& shape, Vec2 place_mm, float heading_rad, BodySpec const& body = {}) {
     ObjectSpec spec;
     spec.shape = shape;
     spec.robot.emplace();
     spec.body = body;
     return add_robot(world, place_mm, heading_rad, spec);
-}
-
-Hull hull_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
-    Hull own;
-    if (shape.kind == ShapeKind::disk) {
-        own.count = 1;
-        own.radius_mm = shape.radius_mm;
-    } else {
-        own = hull_of(outline(shape));
-    }
-    return placed(own, place_mm, direction(heading_rad));
 }
 
 double distance_mm(Vec2 from, Vec2 to, Vec2 point) {
@@ -158,53 +144,6 @@ TEST(Hull, MassIsThatOfItsShape) {
     EXPECT_NEAR(wedge.gyration_mm2, 3600.0F / 12.0F, 0.01F);
 }
 
-float gap_mm(World const& world, std::uint32_t a, std::uint32_t b) {
-    Bodies const& bodies = world.bodies;
-    Vec2 const to_b_mm = minimum_image(world, bodies.position_mm[a], bodies.position_mm[b]);
-    if (bodies.shape[a].kind == ShapeKind::disk && bodies.shape[b].kind == ShapeKind::disk) {
-        return length(to_b_mm) - bodies.radius_mm[a] - bodies.radius_mm[b];
-    }
-    return gap_between_mm(hull_at(bodies.shape[a], {}, bodies.heading_rad[a]),
-                          hull_at(bodies.shape[b], to_b_mm, bodies.heading_rad[b]));
-}
-
-/// With each other, and with the walls of a rectangular arena.
-float deepest_overlap_mm(World const& world) {
-    float deepest_mm = 0.0F;
-    Bodies const& bodies = world.bodies;
-    Box const& box = world.arena.bounds;
-    for (std::uint32_t a = 0; a < bodies.size(); ++a) {
-        for (std::uint32_t b = a + 1; b < bodies.size(); ++b) {
-            float const reach_mm = bodies.radius_mm[a] + bodies.radius_mm[b];
-            if (length(minimum_image(world, bodies.position_mm[a], bodies.position_mm[b])) < reach_mm) {
-                deepest_mm = std::max(deepest_mm, -gap_mm(world, a, b));
-            }
-        }
-        Hull const hull = hull_at(bodies.shape[a], bodies.position_mm[a], bodies.heading_rad[a]);
-        for (std::uint32_t k = 0; k < hull.count && !world.periodic; ++k) {
-            Vec2 const corner = hull.corner_mm[k];
-            deepest_mm =
-                std::max({deepest_mm, hull.radius_mm + box.min.x - corner.x, hull.radius_mm + box.min.y - corner.y,
-                          hull.radius_mm + corner.x - box.max.x, hull.radius_mm + corner.y - box.max.y});
-        }
-    }
-    return deepest_mm;
-}
-
-double energy(World const& world) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-        Shape const& shape = world.bodies.shape[i];
-        double const r = world.bodies.radius_mm[i];
-        HullMass const of = shape.kind == ShapeKind::disk
-                                ? HullMass{static_cast<float>(kPi * r * r), static_cast<float>(0.5 * r * r)}
-                                : mass_of(hull_of(outline(shape)));
-        double const w = world.bodies.angular_velocity_rad_s[i];
-        sum += of.area_mm2 * (squared_length(world.bodies.velocity_mm_s[i]) + of.gyration_mm2 * w * w);
-    }
-    return sum;
-}
-
 /// Rows of disks, boxes and triangles, each of which fills this share of its area, in a box of about 700 mm.
 World packed(float coverage, float restitution) {
     BodySpec const body{.friction = 0.1F, .restitution = restitution};
@@ -257,13 +196,7 @@ TEST_P(MovingHulls, DensePackingDoesNotOverlapNorGainEnergy) {
         }
         auto const engine = make_engine(world, {.friction = 0.1F, .restitution = restitution});
         double const before = energy(world);
-        double highest = 0.0;
-        float deepest_mm = 0.0F;
-        for (int step = 0; step < 250; ++step) {
-            engine->advance(world);
-            highest = std::max(highest, energy(world));
-            deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
-        }
+        auto const [highest, deepest_mm] = extremes_in(world, *engine, 250);
         EXPECT_LT(deepest_mm, is_ours() ? 0.5F : 2.5F) << restitution;
         EXPECT_LT(highest, (is_ours() ? 1.001 : 1.05) * before) << restitution;
     }

@@ -8,12 +8,15 @@
 #include "physics/hulls.hpp"
 #include "physics/physics_engine.hpp"
 #include "support/each_engine.hpp"
+#include "support/shapes.hpp"
 #include "support/small_world.hpp"
 
 namespace pogosim {
 namespace {
 
 using testing::make_engine;
+using testing::rectangle;
+using testing::triangle;
 
 constexpr float kRadiusMm = 26.5F;
 
@@ -40,13 +43,6 @@ std::uint32_t add_obstacle(World& world, Vec2 place_mm, float heading_rad, Shape
     return body;
 }
 
-Shape bar(float width_mm, float height_mm) {
-    return {.kind = ShapeKind::rectangle, .width_mm = width_mm, .height_mm = height_mm};
-}
-Shape triangle(float side_mm) {
-    return {.kind = ShapeKind::triangle, .side_length_mm = side_mm};
-}
-
 Polygon outline_of(World const& world, std::uint32_t body) {
     return moved(outline(world.bodies.shape[body]), world.bodies.position_mm[body], world.bodies.heading_rad[body]);
 }
@@ -69,12 +65,12 @@ protected:
 
 TEST(Hulls, AreAsFarAsTheirOutlinesFromEveryPoint) {
     World world = testing::square_world();
-    std::uint32_t const rectangle = add_obstacle(world, {300, 400}, 0.7F, bar(200, 30));
+    std::uint32_t const bar = add_obstacle(world, {300, 400}, 0.7F, rectangle(200, 30));
     std::uint32_t const wedge = add_obstacle(world, {700, 500}, -2.0F, triangle(150));
     Hulls const polygons(world);
     RandomStream random(7, 0);
     for (int i = 0; i < 2000; ++i) {
-        std::uint32_t const body = i % 2 == 0 ? rectangle : wedge;
+        std::uint32_t const body = i % 2 == 0 ? bar : wedge;
         Vec2 const point_mm =
             world.bodies.position_mm[body] + Vec2{random.uniform(-150.0F, 150.0F), random.uniform(-150.0F, 150.0F)};
         Gap const gap = polygons.gap_to(world, body, point_mm);
@@ -88,7 +84,7 @@ TEST(Hulls, AreAsFarAsTheirOutlinesFromEveryPoint) {
 TEST_P(Obstacles, ThrowDisksBackFromTheirSidesByTheLawOfRestitution) {
     World world = testing::square_world();
     std::uint32_t const robot = add_disk(world, {500, 300}, {40, 100});
-    add_obstacle(world, {500, 500}, 0.0F, bar(400, 60));
+    add_obstacle(world, {500, 500}, 0.0F, rectangle(400, 60));
     run(world, 250);  // 143.5 mm there
     EXPECT_NEAR(world.bodies.velocity_mm_s[robot].x, 40.0F, 0.5F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[robot].y, -50.0F, 0.5F);
@@ -98,7 +94,7 @@ TEST_P(Obstacles, ThrowDisksBackFromTheirCorners) {
     World world = testing::square_world();
     // Onto the corner at (600, 530), half a radius off: at the impact, the normal is 30 degrees off the velocity.
     std::uint32_t const robot = add_disk(world, {600.0F + 0.5F * kRadiusMm, 800}, {0, -100}, disk(1.0F));
-    add_obstacle(world, {500, 500}, 0.0F, bar(200, 60));
+    add_obstacle(world, {500, 500}, 0.0F, rectangle(200, 60));
     run(world, 350);
     EXPECT_NEAR(world.bodies.velocity_mm_s[robot].x, 100.0F * std::sin(1.0471976F), 3.0F);
     EXPECT_NEAR(world.bodies.velocity_mm_s[robot].y, 100.0F * std::cos(1.0471976F), 3.0F);
@@ -111,7 +107,7 @@ TEST_P(Obstacles, StopDisksThatWouldJumpOverThemInAStep) {
             std::uint32_t const robot = add_disk(world, {200, 501}, {});
             // Both have a side at x = 501 that looks to the left.
             if (is_bar) {
-                add_obstacle(world, {503, 500}, 0.0F, bar(4, 600));
+                add_obstacle(world, {503, 500}, 0.0F, rectangle(4, 600));
             } else {
                 add_obstacle(world, {501.0F + 173.2051F, 500}, 1.5707964F, triangle(600));
             }
@@ -132,7 +128,7 @@ TEST_P(Obstacles, HoldCrowdsThatPressAgainstThem) {
         add_disk(world, {100.0F + 60.0F * static_cast<float>(i % 10), 100.0F + 60.0F * static_cast<float>(i / 10)}, {},
                  disk(0.5F, 0.3F));
     }
-    std::uint32_t const rectangle = add_obstacle(world, {500, 700}, 0.4F, bar(300, 40));
+    std::uint32_t const bar = add_obstacle(world, {500, 700}, 0.4F, rectangle(300, 40));
     std::uint32_t const wedge = add_obstacle(world, {750, 550}, 1.0F, triangle(160));
     auto const engine = make_engine(world, {});
     float deepest_mm = 0.0F;
@@ -143,7 +139,7 @@ TEST_P(Obstacles, HoldCrowdsThatPressAgainstThem) {
         }
         engine->advance(world);
         for (std::uint32_t i = 0; i < world.robots.size(); ++i) {
-            for (std::uint32_t const obstacle : {rectangle, wedge}) {
+            for (std::uint32_t const obstacle : {bar, wedge}) {
                 float const gap_mm = signed_distance(world, obstacle, world.bodies.position_mm[i]) - kRadiusMm;
                 deepest_mm = std::max(deepest_mm, -gap_mm);
             }
@@ -155,7 +151,7 @@ TEST_P(Obstacles, HoldCrowdsThatPressAgainstThem) {
 TEST_P(Obstacles, PushAsideWhatIsWhereTheyArePut) {
     World world = testing::square_world();
     std::uint32_t const robot = add_disk(world, {500, 300}, {});
-    std::uint32_t const obstacle = add_obstacle(world, {500, 500}, 0.0F, bar(600, 20));
+    std::uint32_t const obstacle = add_obstacle(world, {500, 500}, 0.0F, rectangle(600, 20));
     auto const engine = make_engine(world, {});
     engine->advance(world);
     EXPECT_EQ(world.bodies.position_mm[robot], (Vec2{500, 300}));

@@ -1,0 +1,89 @@
+// What is measured on crowds of disks and hulls.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+
+#include "physics/hulls.hpp"
+#include "physics/physics_engine.hpp"
+#include "world/world.hpp"
+
+namespace pogosim::testing {
+
+inline Hull hull_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
+    Hull own;
+    if (shape.kind == ShapeKind::disk) {
+        own.count = 1;
+        own.radius_mm = shape.radius_mm;
+    } else {
+        own = hull_of(outline(shape));
+    }
+    return placed(own, place_mm, direction(heading_rad));
+}
+
+inline float gap_mm(World const& world, std::uint32_t a, std::uint32_t b) {
+    Bodies const& bodies = world.bodies;
+    Vec2 const to_b_mm = minimum_image(world, bodies.position_mm[a], bodies.position_mm[b]);
+    if (bodies.shape[a].kind == ShapeKind::disk && bodies.shape[b].kind == ShapeKind::disk) {
+        return length(to_b_mm) - bodies.radius_mm[a] - bodies.radius_mm[b];
+    }
+    return gap_between_mm(hull_at(bodies.shape[a], {}, bodies.heading_rad[a]),
+                          hull_at(bodies.shape[b], to_b_mm, bodies.heading_rad[b]));
+}
+
+/// With each other, and with the walls of a rectangular arena.
+inline float deepest_overlap_mm(World const& world) {
+    float deepest_mm = 0.0F;
+    Bodies const& bodies = world.bodies;
+    Box const& box = world.arena.bounds;
+    for (std::uint32_t a = 0; a < bodies.size(); ++a) {
+        for (std::uint32_t b = a + 1; b < bodies.size(); ++b) {
+            float const reach_mm = bodies.radius_mm[a] + bodies.radius_mm[b];
+            if (length(minimum_image(world, bodies.position_mm[a], bodies.position_mm[b])) < reach_mm) {
+                deepest_mm = std::max(deepest_mm, -gap_mm(world, a, b));
+            }
+        }
+        Hull const hull = hull_at(bodies.shape[a], bodies.position_mm[a], bodies.heading_rad[a]);
+        for (std::uint32_t k = 0; k < hull.count && !world.periodic; ++k) {
+            Vec2 const corner = hull.corner_mm[k];
+            deepest_mm =
+                std::max({deepest_mm, hull.radius_mm + box.min.x - corner.x, hull.radius_mm + box.min.y - corner.y,
+                          hull.radius_mm + corner.x - box.max.x, hull.radius_mm + corner.y - box.max.y});
+        }
+    }
+    return deepest_mm;
+}
+
+/// Twice the kinetic energy, in units of the density.
+inline double energy(World const& world) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        Shape const& shape = world.bodies.shape[i];
+        double const r = world.bodies.radius_mm[i];
+        HullMass const of = shape.kind == ShapeKind::disk ? HullMass{static_cast<float>(std::numbers::pi * r * r),
+                                                                     static_cast<float>(0.5 * r * r)}
+                                                          : mass_of(hull_of(outline(shape)));
+        double const w = world.bodies.angular_velocity_rad_s[i];
+        sum += of.area_mm2 * (squared_length(world.bodies.velocity_mm_s[i]) + of.gyration_mm2 * w * w);
+    }
+    return sum;
+}
+
+struct Extremes {
+    double highest_energy = 0.0;
+    float deepest_overlap_mm = 0.0F;
+};
+
+/// During so many steps.
+inline Extremes extremes_in(World& world, PhysicsEngine& engine, int steps) {
+    Extremes extremes;
+    for (int step = 0; step < steps; ++step) {
+        engine.advance(world);
+        extremes.highest_energy = std::max(extremes.highest_energy, energy(world));
+        extremes.deepest_overlap_mm = std::max(extremes.deepest_overlap_mm, deepest_overlap_mm(world));
+    }
+    return extremes;
+}
+
+}  // namespace pogosim::testing
