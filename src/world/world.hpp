@@ -8,7 +8,7 @@
 //                     robots.stream; for what drives the robots
 //   comms     writes  mailboxes; clears air; draws from robots.stream
 //   physics   writes  position_mm, heading_rad, heading_dir, velocity_mm_s, angular_velocity_rad_s, start_mm and
-//                     start_rad of bodies; clears robots.command[i].pending
+//                     start_rad of bodies; clears robots.command[i].pending; tension and is_cut of links
 //   record, render and view only read
 //
 // Callbacks of the whole run, which run before the robots, also write poses, switched_off and the settings of lamps
@@ -24,6 +24,7 @@
 //   light.level[i]           is sensed and shown until a lamp writes this cell
 //   a message in a mailbox   is received
 //   lamps[i].setting         determines the light of the next step
+//   a link, made or cut      holds from the next step on, or no more; link_changes has to be counted up
 //
 // Everything else is constant during a run.
 #pragma once
@@ -38,6 +39,7 @@
 #include "geometry/arena.hpp"
 #include "world/data_table.hpp"
 #include "world/devices.hpp"
+#include "world/link.hpp"
 #include "world/magnetometer_spec.hpp"
 #include "world/mailbox.hpp"
 #include "world/rgb.hpp"
@@ -219,6 +221,9 @@ struct World {
     Bodies bodies;
     std::vector<Joint> joints;
     std::vector<Membrane> membranes;
+    std::vector<LinkCategory> link_categories;  // in the order of the configuration
+    std::vector<Link> links;
+    std::uint32_t link_changes = 0;  // counts the times that links were made or cut; the engine follows it
     Robots robots;
     Devices devices;
     std::vector<std::uint32_t> switched_off;    // robots, ascending, by set_alive(): they are deaf and mute
