@@ -23,13 +23,13 @@ Pixel colour_of(std::uint8_t emitters) {
                : palette::kLinkByEmitter[static_cast<std::size_t>(std::countr_zero(emitters)) % kMostFaces];
 }
 
-void draw_two_way(Canvas& canvas, Vec2 from, Vec2 to, Link const& link, float width) {
+void draw_two_way(Canvas& canvas, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
     Vec2 const middle = 0.5F * (from + to);
     canvas.chain_link(from, middle, width, with_opacity(colour_of(link.emitters), kOpacity));
     canvas.chain_link(middle, to, width, with_opacity(colour_of(link.emitters_back), kOpacity));
 }
 
-void draw_one_way(Canvas& canvas, Vec2 from, Vec2 to, Link const& link, float width) {
+void draw_one_way(Canvas& canvas, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
     Pixel const colour = colour_of(link.emitters);
     float const size = length(to - from);
     if (size < 1e-3F) {
@@ -56,7 +56,7 @@ void draw_one_way(Canvas& canvas, Vec2 from, Vec2 to, Link const& link, float wi
 
 void draw_links(Scene const& scene) {
     float const width = std::max(kWidth * scene.point_px(), kThinnestPx);
-    for (Link const& link : scene.snapshot.links) {
+    for (InfraredLink const& link : scene.snapshot.links) {
         Vec2 const span = link.to_mm - link.from_mm;
         Box const box{{std::min(span.x, 0.0F), std::min(span.y, 0.0F)},
                       {std::max(span.x, 0.0F), std::max(span.y, 0.0F)}};

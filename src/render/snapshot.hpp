@@ -33,7 +33,7 @@ Scenery make_scenery(World const& world);
 Vec2 minimum_image(Scenery const& scenery, Vec2 from_mm, Vec2 to_mm);
 
 /// Two robots of which one hears the other, or both each other.
-struct Link {
+struct InfraredLink {
     std::uint32_t from = 0;  // indices of robots
     std::uint32_t to = 0;
     Vec2 from_mm;                    // on the rim of `from`, or its outline, towards `to`
@@ -60,7 +60,7 @@ struct Snapshot {
     std::vector<Leds> led;           // of robots
     std::vector<LampMark> lamps;
     std::shared_ptr<LightMap const> light;  // null: not wanted
-    std::vector<Link> links;                // empty: not wanted
+    std::vector<InfraredLink> links;        // empty: not wanted
     std::shared_ptr<Trails const> trails;   // null: not wanted
 };
 

@@ -19,7 +19,7 @@ float radius_of(World const& world, std::uint32_t robot) {
 }
 
 /// The link from rim to rim; for robots that touch or overlap, a point between them.
-void place_between_robots(World const& world, Link& link) {
+void place_between_robots(World const& world, InfraredLink& link) {
     Vec2 const centre = wrapped(world, centre_of(world, link.from));
     Vec2 const offset = minimum_image(world, centre_of(world, link.from), centre_of(world, link.to));
     float const from_radius = radius_of(world, link.from);
@@ -39,7 +39,7 @@ std::uint8_t LinkFinder::emitters_between(std::uint32_t from, std::uint32_t to) 
     return found != last && found->to == to ? found->emitters : std::uint8_t{0};
 }
 
-void LinkFinder::place(World const& world, float range_mm, Link& link) {
+void LinkFinder::place(World const& world, float range_mm, InfraredLink& link) {
     bool const is_from_outline = has_outline(world, link.from);
     if (!is_from_outline && !has_outline(world, link.to)) {
         place_between_robots(world, link);
@@ -58,7 +58,7 @@ void LinkFinder::place(World const& world, float range_mm, Link& link) {
     link.to_mm = link.from_mm + (is_from_outline ? on_rim - to_outline : to_outline - on_rim);
 }
 
-std::vector<Link> LinkFinder::find(World const& world, std::span<float const> range_mm) {
+std::vector<InfraredLink> LinkFinder::find(World const& world, std::span<float const> range_mm) {
     auto const count = static_cast<std::uint32_t>(world.robots.size());
     visibility_.update(world);
     reached_.clear();
@@ -71,7 +71,7 @@ std::vector<Link> LinkFinder::find(World const& world, std::span<float const> ra
     }
     start_.push_back(static_cast<std::uint32_t>(reached_.size()));
 
-    std::vector<Link> links;
+    std::vector<InfraredLink> links;
     for (std::uint32_t from = 0; from < count; ++from) {
         for (std::uint32_t k = start_[from]; k < start_[from + 1]; ++k) {
             auto const [to, emitters] = reached_[k];

@@ -16,7 +16,7 @@ public:
     /// One link for each pair of robots of which at least one reaches the other with any of its emitters, whatever it
     /// sends: the robots that would receive a message if none were lost. Sorted by `from`, then `to`; `from` is the
     /// smaller index when both reach each other, and else the one that is heard. `range_mm`: by robot, 0: mute.
-    std::vector<Link> find(World const& world, std::span<float const> range_mm);
+    std::vector<InfraredLink> find(World const& world, std::span<float const> range_mm);
 
 private:
     /// One direction of a link.
@@ -26,7 +26,7 @@ private:
     };
 
     std::uint8_t emitters_between(std::uint32_t from, std::uint32_t to) const;
-    void place(World const& world, float range_mm, Link& link);
+    void place(World const& world, float range_mm, InfraredLink& link);
 
     Visibility visibility_;
     std::vector<Reach> reached_;        // by sender, then by receiver

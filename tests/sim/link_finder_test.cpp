@@ -27,7 +27,7 @@ constexpr std::uint8_t kRight = 2;
 constexpr std::uint8_t kBack = 4;
 constexpr std::uint8_t kLeft = 8;
 
-std::vector<Link> links_of(World const& world, std::vector<float> range_mm) {
+std::vector<InfraredLink> links_of(World const& world, std::vector<float> range_mm) {
     return LinkFinder().find(world, range_mm);
 }
 
@@ -114,7 +114,7 @@ TEST(Links, LinkBetweenRobotsThatOverlapIsAPointBetweenThem) {
     EXPECT_GE(links[0].to_mm.x, 500.0F);
     EXPECT_LE(links[0].from_mm.x, 550.0F);
     world.bodies.position_mm[1] = {500, 500};
-    for (Link const& link : links_of(world, {80, 80})) {
+    for (InfraredLink const& link : links_of(world, {80, 80})) {
         expect_near(link.from_mm, {500, 500});
         expect_near(link.to_mm, {500, 500});
     }
@@ -198,7 +198,7 @@ TEST(Links, ChannelDeliversAlongThemAndNowhereElse) {
         World world = random_world(random, range_mm);
         auto const count = static_cast<std::uint32_t>(world.robots.size());
         std::vector<std::vector<unsigned>> linked(count, std::vector<unsigned>(count, 0));
-        for (Link const& link : links_of(world, range_mm)) {
+        for (InfraredLink const& link : links_of(world, range_mm)) {
             EXPECT_NE(link.emitters, 0);
             linked[link.from][link.to] = link.emitters;
             linked[link.to][link.from] = link.emitters_back;
@@ -230,7 +230,7 @@ TEST(Links, ArePlacedFromRimToRim) {
     for (int scene = 0; scene < 20; ++scene) {
         std::vector<float> range_mm;
         World const world = random_world(random, range_mm);
-        for (Link const& link : links_of(world, range_mm)) {
+        for (InfraredLink const& link : links_of(world, range_mm)) {
             for (auto const& [robot, point] : {std::pair{link.from, link.from_mm}, std::pair{link.to, link.to_mm}}) {
                 if (world.spec_of(robot).model.sends_along_outline) {
                     continue;
