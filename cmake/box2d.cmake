@@ -1,4 +1,4 @@
-# Box2D 2.4, the only engine for bodies that move and are no disks. Sets POGOSIM_HAS_BOX2D; then, box2d::box2d is there.
+# Box2D 2.4, a second engine that moves bodies. Sets POGOSIM_HAS_BOX2D; then, box2d::box2d is there.
 #
 # Box2D 3 is another library of the same name, for C. Some distributions have no other one any more.
 include_guard()
@@ -22,9 +22,9 @@ if(POGOSIM_BOX2D STREQUAL "AUTO" OR POGOSIM_BOX2D)
     endif()
     set(wanted "Pogosim needs Box2D 2.4, not 3 (Debian and Ubuntu: libbox2d-dev)")
     if(NOT POGOSIM_HAS_BOX2D AND POGOSIM_BOX2D STREQUAL "AUTO")
-        message(STATUS "Built without physics_engine: box2d, so there are no membranes of segments (rectmembrane): ${found}. ${wanted}")
+        message(STATUS "Built without physics_engine: box2d: ${found}. ${wanted}")
     elseif(NOT POGOSIM_HAS_BOX2D)
         message(FATAL_ERROR "POGOSIM_BOX2D is ${POGOSIM_BOX2D}, but ${found}. ${wanted}. "
-            "With -DPOGOSIM_BOX2D=OFF, there are no membranes of segments.")
+            "With -DPOGOSIM_BOX2D=OFF, all objects are moved by our own engine.")
     endif()
 endif()

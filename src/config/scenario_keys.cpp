@@ -58,7 +58,7 @@ std::span<Key<Scenario> const> scenario_keys() {
         K{"simulation_time", &Scenario::simulation_time_s, between(0, 1e9), "s", "Simulated duration of the run."},
         K{"time_step", &Scenario::time_step_s, above(0).up_to(1), "s", "Simulation step."},
         K{"physics_engine", one_of(&Scenario::physics_engine, engines), any(), "",
-          "What moves the objects. auto: disk, except for membranes of segments (rectmembrane), which box2d moves. "
+          "What moves the objects. auto: disk. "
           "disk: the simulator's own engine, several times faster. box2d: Box2D 2.4."},
         K{"threads", NumberOr<Scenario, int>{&Scenario::threads, "auto"}, between(1, kMostThreads), "",
           "Threads that share the work of a run; results are the same with any number. auto: one for every 2000 "

@@ -168,6 +168,22 @@ TEST_P(MembranesOfBothKinds, StayInOnePieceWhileRobotsPushFromInside) {
     }
 }
 
+TEST(MembranesOfTheDiskEngine, KeepTheirShapeAcrossTheSeam) {
+    for (bool const segments : {false, true}) {
+        World world = ring_world({.segments = segments});
+        world.periodic = true;
+        world.bodies.velocity_mm_s.assign(world.bodies.size(), {400, 300});
+        double const area_mm2 = signed_area(line_of(world));
+        auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+        for (int step = 0; step < 1000; ++step) {
+            engine->advance(world);
+            ASSERT_NEAR(signed_area(line_of(world)) / area_mm2, 1.0, 1e-3);
+            ASSERT_TRUE(world.arena.bounds.contains(centre_mm(world, world.objects[0])));
+        }
+        EXPECT_LT(length(mean_velocity_mm_s(world) - Vec2{400, 300}), 0.5F);
+    }
+}
+
 TEST_P(Membranes, SpringsDoNotStretchBeyondTheirLimitByMuchWhenTheyArePulled) {
     // Two heavy disks fly apart inside and pull the ring out.
     World world = testing::square_world(3000.0F);

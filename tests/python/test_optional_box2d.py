@@ -46,8 +46,7 @@ def test_version_2_4_is_found(tmp_path: Path) -> None:
 def test_other_version_is_named_and_done_without(tmp_path: Path) -> None:
     code, said = configured(tmp_path, package_of_version_3(tmp_path))
     assert code == 0
-    consequence = "so there are no membranes of segments (rectmembrane)"
-    assert f"Built without physics_engine: box2d, {consequence}: the Box2D in " in said
+    assert "Built without physics_engine: box2d: the Box2D in " in said
     assert f"(3.1.0) does not fit. {WANTED}" in said
     assert "has it: 1" not in said
 
@@ -57,7 +56,7 @@ def test_other_version_is_an_error_if_it_is_asked_for(tmp_path: Path) -> None:
     assert code == 1
     assert "POGOSIM_BOX2D is ON, but the Box2D in " in said
     assert WANTED in said
-    assert "With -DPOGOSIM_BOX2D=OFF, there are no membranes of segments." in said
+    assert "With -DPOGOSIM_BOX2D=OFF, all objects are moved by our own engine." in said
 
 
 @pytest.mark.parametrize("option", ["-DCMAKE_DISABLE_FIND_PACKAGE_box2d=ON", "-DPOGOSIM_BOX2D=OFF"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 from pogosim.utils import load_dataframe
 from running import Run, example, run
 
@@ -79,23 +80,11 @@ def test_robots_push_a_bar_across_the_seam_with_equal_bytes(tmp_path: Path) -> N
         assert gap.min() > -0.5, time
 
 
-def test_disk_engine_refuses_membranes_of_segments(tmp_path: Path) -> None:
-    result = run(example("run_and_tumble"), tmp_path, {"physics_engine": "disk", **RINGS})
-    line = next(
-        number
-        for number, text in enumerate((tmp_path / "scene.yaml").read_text().splitlines(), 1)
-        if text.startswith("physics_engine")
-    )
-    reason = "disk does not move membranes of segments ('rings'); use auto or box2d"
-    assert (result.code, result.errors) == (2, f"Error: scene.yaml:{line}: physics_engine: {reason}\n")
-
-
-def test_automatic_choice_of_box2d_is_explained(tmp_path: Path) -> None:
-    short = {"simulation_time": 0.1, "arena_file": "arenas/square.csv"}
-    for boundary, more in (("solid", ""), ("periodic", "; bodies do not meet across the borders of the arena")):
-        result = run(example("run_and_tumble"), tmp_path, {**short, **RINGS, "boundary_condition": boundary})
-        assert result.code == 0, result.text
-        (line,) = [line for line in result.output.splitlines() if "physics_engine: " in line]
-        reason = "since disk does not move membranes of segments ('rings')"
-        assert line.endswith(f"[info] physics_engine: box2d, {reason}{more}")
-    assert "physics_engine: " not in run(example("run_and_tumble"), tmp_path, {**short, **BARS}).output
+@pytest.mark.parametrize("boundary", ["solid", "periodic"])
+def test_everything_is_moved_by_our_own_engine(boundary: str, tmp_path: Path) -> None:
+    settings = {"simulation_time": 0.1, "arena_file": "arenas/square.csv", "boundary_condition": boundary}
+    result = run(example("run_and_tumble"), tmp_path, {**settings, **RINGS, **BARS})
+    assert result.code == 0, result.text
+    assert "physics_engine" not in result.output
+    metadata = load_dataframe(tmp_path / "data.feather")[1]
+    assert metadata["resolved_configuration"]["physics_engine"] == "disk"

@@ -123,15 +123,52 @@ World mixture(Arena const& arena, std::size_t count) {
 }
 
 /// Robots in soft membranes that push each other.
-World membranes() {
+World membranes(bool segments) {
     World world = testing::square_world();
     for (std::uint32_t i = 0; i < 24; ++i) {
         Vec2 const centre_mm{250.0F + 500.0F * static_cast<float>(i % 2), 500.0F};
         float const turn_rad = 0.26F * static_cast<float>(i);
         testing::add_robot(world, centre_mm + 140.0F * direction(turn_rad), 3.0F * turn_rad);
     }
-    testing::add_ring(world, {.centre_mm = {250, 500}, .radius_mm = 220.0F});
-    testing::add_ring(world, {.centre_mm = {750, 500}, .radius_mm = 220.0F});
+    testing::add_ring(world, {.centre_mm = {250, 500}, .radius_mm = 220.0F, .segments = segments});
+    testing::add_ring(world, {.centre_mm = {750, 500}, .radius_mm = 220.0F, .segments = segments});
+    return world;
+}
+
+/// A lattice of robots: springs along its rows, rods and hinges across, and its first row held to the arena.
+World lattice() {
+    World world = testing::square_world();
+    constexpr std::uint32_t side = 10;
+    auto const link = [&](LinkKind kind, std::uint32_t a, std::uint32_t b, Vec2 end_a_mm, Vec2 end_b_mm) {
+        world.links.push_back({.kind = kind,
+                               .a = a,
+                               .b = b,
+                               .end_a_mm = end_a_mm,
+                               .end_b_mm = end_b_mm,
+                               .length_mm = 75.0F,
+                               .stiffness_n_m = 200.0F,
+                               .damping_n_s_m = 2.0F,
+                               .breaking_n = 60.0F});
+    };
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+        Vec2 const place_mm{150.0F + 75.0F * static_cast<float>(i % side),
+                            150.0F + 75.0F * static_cast<float>(i / side)};
+        testing::add_robot(world, place_mm, 0.4F * static_cast<float>(i));
+        if (i % side > 0) {
+            link(LinkKind::spring, i - 1, i, {}, {});
+        }
+        if (i < side) {
+            link(LinkKind::spring, i, kNone, {20.0F, 0.0F}, place_mm - Vec2{0.0F, 80.0F});
+        } else if (i % 3 == 0) {
+            link(LinkKind::rod, i - side, i, {}, {});
+        } else if (i % 3 == 1) {
+            link(LinkKind::hinge, i - side, i, rotate({0.0F, 37.5F}, direction(-0.4F * static_cast<float>(i - side))),
+                 rotate({0.0F, -37.5F}, direction(-0.4F * static_cast<float>(i))));
+            world.links.back().rest_rad = 4.0F;
+            world.links.back().least_rad = -0.5F;
+            world.links.back().most_rad = 0.5F;
+        }
+    }
     return world;
 }
 
@@ -258,7 +295,9 @@ int main(int count, char** arguments) {
     World mixed_torus = mixture(arena_of("square", 1.2e6), 250);
     mixed_torus.periodic = true;
     move("boxes and wedges periodic", std::move(mixed_torus));
-    move("membranes", membranes());
+    move("membranes", membranes(/*segments=*/false));
+    move("membranes of segments", membranes(/*segments=*/true));
+    move("links", lattice());
     talk("messages article", {.law = ReceptionLaw::article}, false);
     talk("messages power", four_parameter_law(), true);
     talk("messages constant", {.law = ReceptionLaw::constant, .rate = 0.7}, false);

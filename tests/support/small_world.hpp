@@ -143,10 +143,15 @@ inline Membrane add_ring(World& world, RingSpec const& ring) {
     if (ring.segments) {
         spec.shape = {.kind = ShapeKind::rectangle, .width_mm = side_mm, .height_mm = 2.0F * ring.dot_radius_mm};
     }
+    auto const centre_mm = [&](std::uint32_t k) {
+        return ring.segments ? 0.5F * (place_mm(k) + place_mm(k + 1)) : place_mm(k);
+    };
     for (std::uint32_t k = 0; k < ring.dots; ++k) {
         Vec2 const way_mm = place_mm(k + 1) - place_mm(k);
-        Vec2 const middle_mm = place_mm(k) + 0.5F * way_mm;
-        add_body(world, ring.segments ? middle_mm : place_mm(k), ring.segments ? std::atan2(way_mm.y, way_mm.x) : 0.0F,
+        add_body(world, centre_mm(k),
+                 ring.segments
+                     ? static_cast<float>(exact::atan2(static_cast<double>(way_mm.y), static_cast<double>(way_mm.x)))
+                     : 0.0F,
                  spec);
     }
     for (std::uint32_t k = 0; k < ring.dots; ++k) {
@@ -158,16 +163,14 @@ inline Membrane add_ring(World& world, RingSpec const& ring) {
                                         .anchor_b_mm = {-0.5F * side_mm, 0.0F}});
                 continue;
             }
-            world.joints.push_back(
-                {.a = membrane.body + k,
-                 .b = membrane.body + (k + span) % ring.dots,
-                 .anchor_a_mm = {},
-                 .anchor_b_mm = {},
-                 .length_mm = length(world.bodies.position_mm[membrane.body + (k + span) % ring.dots] -
-                                     world.bodies.position_mm[membrane.body + k]),
-                 .stiffness_hz = span == 1 ? 30.0F : 24.0F,
-                 .damping_ratio = 0.3F,
-                 .max_stretch = span == 1 ? 0.05F : 0.0F});
+            world.joints.push_back({.a = membrane.body + k,
+                                    .b = membrane.body + (k + span) % ring.dots,
+                                    .anchor_a_mm = {},
+                                    .anchor_b_mm = {},
+                                    .length_mm = length(centre_mm(k + span) - centre_mm(k)),
+                                    .stiffness_hz = span == 1 ? 30.0F : 24.0F,
+                                    .damping_ratio = 0.3F,
+                                    .max_stretch = span == 1 ? 0.05F : 0.0F});
         }
     }
     world.membranes.push_back(membrane);
