@@ -31,7 +31,12 @@ std::filesystem::path path_of_model(Place const& place, std::filesystem::path co
 }
 
 Node read_model_file(std::string const& path) {
-    Node model = read_yaml_file(path);
+    constexpr std::string_view kContent =
+        "a robot model holds keys of a category, such as radius: 26.5, communication_radius: 80, faces or motors";
+    Node model = read_yaml_file(path, kContent);
+    if (model.entries.empty()) {
+        throw ConfigError(fmt::format("{}: the map is empty; {}", model.where(), kContent));
+    }
     if (Node const* const other = model.find(kKey)) {
         fail_at({*other, std::string(kKey)},
                 "a robot model cannot name another one; copy the keys of that one into this file");
@@ -70,8 +75,8 @@ void include_robot_models(Node& root, Reading& reading) {
             return;
         }
         reading.problems.collect([&] {
-            std::filesystem::path const file =
-                path_of_model({*name, fmt::format("{}.{}", path, kKey)}, reading.configuration);
+            Place const place{*name, fmt::format("{}.{}", path, kKey)};
+            std::filesystem::path const file = path_of_model(place, reading.configuration);
             if (!models.contains(file)) {
                 models.emplace(file, read_model_file(file.string()));
                 reading.object_files.push_back({file, "the robot model"});
