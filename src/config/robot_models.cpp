@@ -1,6 +1,7 @@
 #include "config/robot_models.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "config/value_or_file.hpp"
 #include "config/values.hpp"
 
@@ -51,6 +54,19 @@ Node read_model_file(std::string const& path) {
     return model;
 }
 
+/// Warns of a model of which nothing counts. `name` is where the entry names it.
+void warn_without_effect(Place const& name, Node const& entry, Node const& model) {
+    std::vector<std::string_view> keys;
+    for (auto const& [key, value] : model.entries) {
+        if (entry.find(key) == nullptr) {
+            return;
+        }
+        keys.push_back(key);
+    }
+    log().warn("{}: {}: '{}' changes nothing, since the category has {} itself; remove there what the model is to give",
+               name.node.where(), name.path, shown(name.node.scalar), fmt::join(keys, ", "));
+}
+
 /// The entry with the model's keys first.
 Node merged(Node const& entry, Node const& model) {
     Node all = entry;
@@ -81,6 +97,7 @@ void include_robot_models(Node& root, Reading& reading) {
                 models.emplace(file, read_model_file(file.string()));
                 reading.object_files.push_back({file, "the robot model"});
             }
+            warn_without_effect(place, entry, models.at(file));
             entry = merged(entry, models.at(file));
         });
     };

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from pogosim import extensions
 from pogosim.batch.run_files import with_files_beside
+from pogosim.utils import load_dataframe
 from project import CLEAN
 from running import ROOT, Run, build_folder, example, ran, run, write_scene
 
@@ -109,6 +110,19 @@ def test_models_of_a_package_are_found_by_whatever_simulates(packages: Path, tmp
     )
     inside = called(tmp_path, packages, str(program), module="inside")
     assert (inside.code, inside.output) == (0, f"{models}\n"), inside.text
+
+
+def test_run_of_the_page_has_the_model_of_the_package(packages: Path, tmp_path: Path) -> None:
+    (line,) = re.findall(r"^pogosim (run .*)$", PAGE.read_text(), re.MULTILINE)
+    words = [word if not word.startswith(("./", "conf/")) else str(ROOT / word) for word in line.split()]
+    words[1] = str(example("hanabi"))
+    done = called(
+        tmp_path, packages, *words, "-g", "-q", "--set", "simulation_time=1", "--set", "data_filename=a.feather"
+    )
+    assert (done.code, done.output, done.errors) == (0, "", "")
+    robots = load_dataframe(tmp_path / "a.feather")[1]["resolved_configuration"]["objects"]["robots"]
+    assert [face["angle_deg"] for face in robots["faces"]] == [0, 180]
+    assert robots["communication_radius"] == 80
 
 
 def test_folders_of_the_user_come_before_those_of_packages(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
