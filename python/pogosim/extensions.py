@@ -195,6 +195,20 @@ def said(error: BaseException) -> str:
     return lines[0] if lines else type(error).__name__
 
 
+def raised(error: BaseException, point: EntryPoint) -> str:
+    """Return what a package did, with the last line of its own: "raised KeyError: 'age' (/home/me/lab/count.py:12)"."""
+    import traceback  # takes a while
+
+    package = point.value.partition(":")[0].strip().partition(".")[0]
+    places = [
+        f" ({frame.f_code.co_filename}:{line})"
+        for frame, line in traceback.walk_tb(error.__traceback__)
+        if str(frame.f_globals.get("__name__")).partition(".")[0] == package
+    ]
+    name = type(error).__name__
+    return f"raised {name if said(error) == name else f'{name}: {said(error)}'}{places[-1] if places else ''}"
+
+
 def described(found: Any) -> str:
     """Return what something is, for messages."""
     if isinstance(found, ModuleType):

@@ -1,10 +1,13 @@
 #include "brain/host_brain.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <optional>
 
+#include "base/log.hpp"
 #include "brain/signed_power.hpp"
 #include "brain/ticks.hpp"
 #include "device/battery.hpp"
@@ -67,7 +70,22 @@ void HostBrain::set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorC
         return;
     }
     for (std::size_t motor = 0; motor < kMotorCount; ++motor) {
-        set_signed_power(world_, robot, motor, powers[motor]);
+        std::int32_t const power = powers[motor];
+        set_signed_power(world_, robot, motor, power);
+        std::int32_t const most = kFullMotorPower;
+        if (power > most || power < -most) [[unlikely]] {
+            warn_once(TooMuch::power,
+                      fmt::format("motors[{}, {}] is {}, expected -{} to {}; {} is used", robot - range_.first, motor,
+                                  power, most, most, power < 0 ? -most : most));
+        }
+    }
+}
+
+void HostBrain::warn_once(TooMuch which, std::string_view what) {
+    bool& warned = warned_[static_cast<std::size_t>(which)];
+    if (!warned) {
+        warned = true;
+        log().warn("brain of category '{}': {}", category_, what);
     }
 }
 
@@ -83,6 +101,10 @@ void HostBrain::send(std::uint32_t robot) {
     bool const is_to_one = face >= 0 && face < static_cast<int>(kMostFaces);
     auto const emitters = is_to_one ? static_cast<std::uint8_t>(all & 1U << face) : all;
     auto const size = std::min(static_cast<std::size_t>(length), kMostPayloadBytes);
+    if (static_cast<std::size_t>(length) > kMostPayloadBytes) [[unlikely]] {
+        warn_once(TooMuch::length, fmt::format("send_length[{}] is {}, expected at most {} bytes; {} are sent", i,
+                                               length, kMostPayloadBytes, kMostPayloadBytes));
+    }
     send_message(world_, robot, emitters, std::span<std::byte const>(inputs_.send_bytes[i]).first(size));
 }
 

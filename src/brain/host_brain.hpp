@@ -24,13 +24,13 @@ class HostBrain final : public Brain {
 public:
     /// What the host writes. Shape: one entry per robot of the category.
     struct Inputs {
-        /// Powers of the right, the left and the back motor, -1023 to 1023, beyond which they are cut; positive is
-        /// forward. Until one is not 0, the motors of this robot leave it alone.
+        /// Powers of the right, the left and the back motor, -1023 to 1023, beyond which they are cut, with a warning;
+        /// positive is forward. Until one is not 0, the motors of this robot leave it alone.
         std::vector<std::array<std::int32_t, kMotorCount>> motors;
         std::vector<Leds> leds;  // head, front, right, back, left
         std::vector<std::array<std::byte, kMostPayloadBytes>> send_bytes;
         /// Bytes of a message to send, 0 to 382; negative: none. Set back to -1 by the tick that sends it. Longer
-        /// messages are cut to 382 bytes.
+        /// messages are cut to 382 bytes, with a warning.
         std::vector<std::int32_t> send_length;
         std::vector<std::int8_t> send_face;  // 0 front, 1 right, 2 back, 3 left; others: all
     };
@@ -74,9 +74,14 @@ public:
     void clear_received();
 
 private:
+    /// Values that the host writes beyond what a robot takes, each warned of once.
+    enum class TooMuch { power, length };
+
     void tick(std::uint32_t robot);
     void set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorCount> const& powers);
     void send(std::uint32_t robot);
+    /// `what`: "motors[3, 0] is 5000, expected ...".
+    void warn_once(TooMuch which, std::string_view what);
     void read_sensors(std::uint32_t robot);
     void take_messages(std::uint32_t robot);
     /// Calls visit(span) for each array of the state: numbers of entries before what they count.
@@ -86,6 +91,7 @@ private:
     World& world_;
     std::string category_;
     RobotRange range_;
+    std::array<bool, 2> warned_{};  // of a TooMuch
     Inputs inputs_;
     Outputs outputs_;
     std::size_t most_received_ = 0;

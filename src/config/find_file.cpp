@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/library_folder.hpp"
+#include "config/values.hpp"
 
 namespace pogosim {
 
@@ -110,9 +111,13 @@ std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::
         return bundled_periodic_square();
     }
     if (found.path.empty()) {
-        throw ConfigError(fmt::format("{}: there is no file '{}'{}{}", place_of(scenario, setting), name,
+        throw ConfigError(fmt::format("{}: there is no file '{}'{}{}", place_of(scenario, setting), shown(name),
                                       found.searched,
                                       is_arena ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
+    }
+    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
+        throw ConfigError(
+            fmt::format("{}: '{}' is a folder; expected a file", place_of(scenario, setting), shown(name)));
     }
     return found.path;
 }

@@ -19,7 +19,7 @@ struct FoundFile {
 FoundFile search_file(std::filesystem::path const& configuration, std::string const& name);
 
 /// Returns the path of a file that the configuration names, as search_file() finds it. Throws ConfigError if there is
-/// none. An empty name stays empty.
+/// none, or a folder. An empty name stays empty.
 std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name);
 
 /// Whether an arena file has one of the names by which configurations mean a square without walls: torus.csv and

@@ -139,11 +139,10 @@ Node parse_yaml(std::string const& text, std::string const& source) {
     }
 }
 
-Node read_yaml_file(std::string const& path) {
+Node read_yaml_file(std::string const& path, std::string_view content) {
     Node root = parse_yaml(read_text(path), path);
     if (root.kind == Node::Kind::null) {
-        throw ConfigError(fmt::format(
-            "{}: the file is empty; expected a map of keys, in a configuration with at least 'objects'", path));
+        throw ConfigError(fmt::format("{}: the file is empty; {}", path, content));
     }
     if (root.kind != Node::Kind::map) {
         throw ConfigError(

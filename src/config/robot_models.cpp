@@ -1,6 +1,7 @@
 #include "config/robot_models.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "config/value_or_file.hpp"
 #include "config/values.hpp"
 
@@ -31,7 +34,12 @@ std::filesystem::path path_of_model(Place const& place, std::filesystem::path co
 }
 
 Node read_model_file(std::string const& path) {
-    Node model = read_yaml_file(path);
+    constexpr std::string_view kContent =
+        "a robot model holds keys of a category, such as radius: 26.5, communication_radius: 80, faces or motors";
+    Node model = read_yaml_file(path, kContent);
+    if (model.entries.empty()) {
+        throw ConfigError(fmt::format("{}: the map is empty; {}", model.where(), kContent));
+    }
     if (Node const* const other = model.find(kKey)) {
         fail_at({*other, std::string(kKey)},
                 "a robot model cannot name another one; copy the keys of that one into this file");
@@ -44,6 +52,19 @@ Node read_model_file(std::string const& path) {
         }
     }
     return model;
+}
+
+/// Warns of a model of which nothing counts. `name` is where the entry names it.
+void warn_without_effect(Place const& name, Node const& entry, Node const& model) {
+    std::vector<std::string_view> keys;
+    for (auto const& [key, value] : model.entries) {
+        if (entry.find(key) == nullptr) {
+            return;
+        }
+        keys.push_back(key);
+    }
+    log().warn("{}: {}: '{}' changes nothing, since the category has {} itself; remove there what the model is to give",
+               name.node.where(), name.path, shown(name.node.scalar), fmt::join(keys, ", "));
 }
 
 /// The entry with the model's keys first.
@@ -70,12 +91,13 @@ void include_robot_models(Node& root, Reading& reading) {
             return;
         }
         reading.problems.collect([&] {
-            std::filesystem::path const file =
-                path_of_model({*name, fmt::format("{}.{}", path, kKey)}, reading.configuration);
+            Place const place{*name, fmt::format("{}.{}", path, kKey)};
+            std::filesystem::path const file = path_of_model(place, reading.configuration);
             if (!models.contains(file)) {
                 models.emplace(file, read_model_file(file.string()));
                 reading.object_files.push_back({file, "the robot model"});
             }
+            warn_without_effect(place, entry, models.at(file));
             entry = merged(entry, models.at(file));
         });
     };

@@ -48,8 +48,9 @@ struct Node::Entry {
 /// Reads a YAML file. Throws ConfigError ("file:line: ...") for a missing or unreadable file, a syntax error, a
 /// document that is not a map, nesting deeper than 100, or more than a million nodes once aliases are followed. A key
 /// that stands twice in one map is a warning, the last one wins; in `objects` each is kept: the value becomes a list.
-/// `<<` merges maps as in YAML 1.1.
-Node read_yaml_file(std::string const& path);
+/// `<<` merges maps as in YAML 1.1. `content` is what an empty file is told to hold.
+Node read_yaml_file(std::string const& path,
+                    std::string_view content = "expected a map of keys, in a configuration with at least 'objects'");
 
 /// Applies one `--set a.b.c=value`: the value is YAML; maps on the way are made where they are missing, a number walks
 /// into a sequence, `\.` is a dot inside a key. Throws ConfigError when the text has no '=' or a path runs through a

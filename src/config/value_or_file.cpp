@@ -29,7 +29,7 @@ WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading&
         return {.node = place.node, .path = place.path};
     }
     std::filesystem::path const path = path_of_yaml(place, reading.configuration, file.expected);
-    Node const content = read_yaml_file(path.string());
+    Node const content = read_yaml_file(path.string(), file.content);
     reading.object_files.push_back({path, file.name});
     Node const* const value = content.find(file.key);
     if (value == nullptr || content.entries.size() != 1) {

@@ -19,7 +19,7 @@ struct WrittenValue {
 struct FileOfValue {
     std::string_view key;       // also in the file, which has no other
     std::string_view expected;  // "the name of a file with a list `script`, or that list"
-    std::string_view content;   // what is said of a file with something else
+    std::string_view content;   // what is said of a file with something else, or nothing
     char const* name;           // "the script"
 };
 

@@ -52,6 +52,7 @@ POGO_WITHIN_PROGRAM int __cxa_atexit(void (*destroy)(void*), void* object, void*
 
 // After guard_process() of main.c, which must not run again; constructors of static objects come much later.
 __attribute__((constructor(102))) static void before_constructors(void) {
+    pogosim_srand(1);  // what constructors draw is the same each time that a process loads the program
     pogosim_before_constructors(&pogosim_this_program, before_constructors);
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "config/config_file.hpp"
 #include "device/clock.hpp"
 #include "support/devices.hpp"
 
@@ -60,6 +61,23 @@ TEST(HostBrain, PositivePowersAreForwardAndBeyondTheMostAreFull) {
     EXPECT_FLOAT_EQ(world.robots.command[0].velocity_mm_s.x, most);
     EXPECT_FLOAT_EQ(world.robots.command[1].velocity_mm_s.x, -most * 512.0F / 1023.0F);
     EXPECT_FLOAT_EQ(world.robots.command[1].angular_velocity_rad_s, 0.0F);
+}
+
+TEST(HostBrain, FirstValueBeyondWhatARobotTakesIsWarnedOfWithItsRobot) {
+    World world = two_robots();
+    HostBrain brain(world, "robots", robots_of(world, 0));
+    config_file::Warnings const warnings;
+    brain.inputs().motors[0] = {1023, -1023, 0};
+    brain.inputs().motors[1] = {5, -1024, 0};
+    write_message(brain, 1, "abc");
+    brain.inputs().send_length[1] = 383;
+    brain.run_step();
+    EXPECT_EQ(warnings.text(),
+              "brain of category 'robots': motors[1, 1] is -1024, expected -1023 to 1023; -1023 is used\n"
+              "brain of category 'robots': send_length[1] is 383, expected at most 382 bytes; 382 are sent\n");
+    brain.inputs().motors[0] = {5000, 5000, 5000};
+    tick(world, brain);
+    EXPECT_EQ(warnings.lines().size(), 2U);
 }
 
 TEST(HostBrain, MotorsThatWereNeverSetLeaveTheirRobotAloneAndThenHoldIt) {

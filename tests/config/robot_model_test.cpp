@@ -180,6 +180,32 @@ TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
     EXPECT_NE(warnings.text().find("'faces'"), std::string::npos);
 }
 
+TEST(RobotModel, FileWithoutKeysIsToldWhatARobotModelHolds) {
+    Folder const folder;
+    Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
+    std::string const content =
+        " is empty; a robot model holds keys of a category, such as radius: 26.5, communication_radius: 80, faces or "
+        "motors";
+    for (auto const& [text, what] :
+         {std::pair{"", "m.yaml: the file"}, {"# later\n", "m.yaml: the file"}, {"{}\n", "m.yaml:1: the map"}}) {
+        Folder::write("m.yaml", text);
+        EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}); }), what + content);
+    }
+}
+
+TEST(RobotModel, FileOfWhichNothingCountsIsWarnedOf) {
+    Folder const folder;
+    Folder::write("m.yaml", "radius: 30\ncommunication_radius: 55\n");
+    Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml, communication_radius: 70}\n");
+    Warnings const warnings;
+    load_scenario("x.yaml", {});  // gives the radius
+    EXPECT_EQ(warnings.text(), "");
+    load_scenario("x.yaml", {.overrides = {"objects.robots.radius=26.5"}});
+    EXPECT_EQ(warnings.text(),
+              "x.yaml:2: objects.robots.robot_model: 'm.yaml' changes nothing, since the category has radius, "
+              "communication_radius itself; remove there what the model is to give\n");
+}
+
 TEST(RobotModel, FolderInPlaceOfAFileIsRefusedWithItsLine) {
     EXPECT_NE(error_in("    robot_model: .\n").find("'.' is a folder; expected a YAML file"), std::string::npos);
     EXPECT_NE(error_in("    robot_model: .\n").find("objects.robots.robot_model"), std::string::npos);

@@ -49,6 +49,13 @@ def test_robots_move_by_the_powers_of_the_array(tmp_path: Path) -> None:
         assert np.array_equal(sim.positions, before)
 
 
+def test_powers_beyond_the_range_are_warned_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        sim.brain("robots").motors[1, 0] = 5000
+        sim.step(20)
+    assert caplog.messages == ["brain of category 'robots': motors[1, 0] is 5000, expected -1023 to 1023; 1023 is used"]
+
+
 def test_arrays_may_be_assigned(tmp_path: Path) -> None:
     with hosted(tmp_path, HOST) as sim:
         brain = sim.brain("robots")

@@ -71,6 +71,12 @@ def test_comparison_ends_where_it_is_told_to(tmp_path: Path) -> None:
     assert len(compared(tmp_path, step, "--most", "1").output.splitlines()) == 2
 
 
+def test_keys_that_are_set_hold_for_both_runs(tmp_path: Path) -> None:
+    result = compared(tmp_path, "", "--set", "objects.robots.nb=5", "--set", "simulation_time=1", "--set", "seed=7")
+    assert result.code == 0, result.text
+    assert result.output.splitlines() == ["equal for 1 s: 5 robots do the same as a program and as firmware"]
+
+
 def test_program_without_user_data_is_compared(tmp_path: Path) -> None:
     text = """#include "pogobot.h"
     static uint8_t count;
@@ -140,6 +146,10 @@ def test_failed_run_names_no_file_that_is_gone(tmp_path: Path) -> None:
         ((".",), ". is not a project: it has no Makefile (pogosim new NAME makes a project)"),
         (("main.c", "--category", "others"), "objects: unknown category 'others'"),
         (("main.c", "--most", "0"), "argument --most: "),
+        (("main.c", "--set", "seed"), "argument --set: expected KEY=VALUE, such as objects.robots.nb=50, found 'seed'"),
+        (("main.c", "--set", "seed=[1"), "argument --set: seed: not YAML: "),
+        (("main.c", "--set", "parameters.a=1"), "parameters.a: both runs have the parameters of the source; change"),
+        (("main.c", "--set", "objects.robots.nb=many"), "objects.robots.nb: expected an integer from 0 to 10000000"),
     ],
 )
 def test_what_cannot_be_compared_is_one_line(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from pogosim import extensions
 from pogosim.batch.run_files import with_files_beside
+from pogosim.utils import load_dataframe
 from project import CLEAN
 from running import ROOT, Run, build_folder, example, ran, run, write_scene
 
@@ -109,6 +110,19 @@ def test_models_of_a_package_are_found_by_whatever_simulates(packages: Path, tmp
     )
     inside = called(tmp_path, packages, str(program), module="inside")
     assert (inside.code, inside.output) == (0, f"{models}\n"), inside.text
+
+
+def test_run_of_the_page_has_the_model_of_the_package(packages: Path, tmp_path: Path) -> None:
+    (line,) = re.findall(r"^pogosim (run .*)$", PAGE.read_text(), re.MULTILINE)
+    words = [word if not word.startswith(("./", "conf/")) else str(ROOT / word) for word in line.split()]
+    words[1] = str(example("hanabi"))
+    done = called(
+        tmp_path, packages, *words, "-g", "-q", "--set", "simulation_time=1", "--set", "data_filename=a.feather"
+    )
+    assert (done.code, done.output, done.errors) == (0, "", "")
+    robots = load_dataframe(tmp_path / "a.feather")[1]["resolved_configuration"]["objects"]["robots"]
+    assert [face["angle_deg"] for face in robots["faces"]] == [0, 180]
+    assert robots["communication_radius"] == 80
 
 
 def test_folders_of_the_user_come_before_those_of_packages(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -234,6 +248,39 @@ def test_analysis_whose_work_is_not_there(tmp_path: Path) -> None:
     (line,) = done.errors.splitlines()
     assert (done.code, done.output) == (2, "")
     assert line.endswith("lab:nosuch cannot be imported: module 'lab' has no attribute 'nosuch'")
+
+
+SHOWN = "; PYTHONDEVMODE=1 shows the traceback"
+IN_AST = "(<unknown>, line 1) ({folder}/lab.py:3)"
+
+
+@pytest.mark.parametrize(
+    ("code", "exit_code", "problem"),
+    [
+        ("    {}['age']", 3, "{entry} raised KeyError: 'age' ({folder}/lab.py:2)" + SHOWN),
+        ("    import ast\n    ast.parse('(')", 3, "{entry} raised SyntaxError: '(' was never closed " + IN_AST + SHOWN),
+        ("    open('none.csv')", 2, "none.csv: no such file or directory"),
+        ("    import pogosim.errors\n    raise pogosim.errors.ToolError('expected a file')", 2, "expected a file"),
+        ("    raise SystemExit(7)", 7, None),
+    ],
+)
+def test_command_that_raises_is_told_in_a_line(code: str, exit_code: int, problem: str | None, tmp_path: Path) -> None:
+    install(tmp_path, "lab", {"commands": "thing = lab:main"}, f"def main(arguments, prog):\n{code}\n")
+    done = called(tmp_path, tmp_path, "thing")
+    entry = "command 'thing' of the package lab 1.0 (pogosim.commands: lab:main)"
+    line = "" if problem is None else f"pogosim thing: {problem.format(entry=entry, folder=tmp_path)}\n"
+    assert (done.code, done.output, done.errors) == (exit_code, "", line)
+
+
+def test_traceback_of_a_command_is_shown_in_the_development_mode_of_python(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    install(tmp_path, "lab", {"commands": "thing = lab:main"}, "def main(arguments, prog):\n    {}['age']\n")
+    monkeypatch.setitem(CLEAN, "PYTHONDEVMODE", "1")
+    done = called(tmp_path, tmp_path, "thing")
+    assert done.code == 3
+    assert "Traceback (most recent call last):" in done.errors
+    assert done.errors.splitlines()[-1].startswith("pogosim thing: command 'thing' of the package lab 1.0 ")
 
 
 @pytest.mark.parametrize("group", GROUPS)

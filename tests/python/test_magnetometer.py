@@ -228,6 +228,7 @@ def test_pose_outside_the_domain_ends_the_run_if_asked(reader: Path, tmp_path: P
 
 WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
     "no file": ("", {"file": "absent.csv"}, "there is no file 'absent.csv'; searched"),
+    "folder": ("", {"file": "."}, "magnetometer.csv.file: '.' is a folder; expected a file"),
     "no column": ("heading,mag_x,mag_y,mag_z\n1,2,3,4\n", {}, "there is no column 'angle'"),
     "misspelt column": (
         "angle,mag_x,mag_y,magz\n1,2,3,4\n",

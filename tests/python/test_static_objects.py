@@ -59,6 +59,28 @@ def test_runs_in_python_have_them(tmp_path: Path, capfd: pytest.CaptureFixture[s
     assert "another robot" not in capfd.readouterr().out
 
 
+def test_constructors_draw_the_same_numbers_after_each_reset(tmp_path: Path) -> None:
+    source = tmp_path / "main.cpp"
+    source.write_text("""#include <cstdlib>
+#include "pogobase.h"
+struct Data { int drawn; };
+DECLARE_USERDATA(Data)
+REGISTER_USERDATA(Data)
+int drawn = std::rand();
+void step() { mydata->drawn = drawn; }
+int main() { pogobot_init(); pogobot_start(nullptr, step); return 0; }
+""")
+    library = compile_program(tmp_path / "draws.so", source, flags=["-shared", "-fPIC", "-g"])
+    with Simulation(library, write_scene(tmp_path, {"objects.robots.nb": 1})) as simulation:
+        drawn = []
+        for _ in range(3):
+            simulation.step(5)
+            drawn.append(int(simulation.user_data["drawn"][0]))
+            simulation.reset()
+    assert drawn[0] != 0
+    assert len(set(drawn)) == 1
+
+
 def test_objects_are_shared_where_variables_are(tmp_path: Path) -> None:
     source = tmp_path / "main.cpp"
     source.write_text("""#include <vector>

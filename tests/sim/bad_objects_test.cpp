@@ -203,6 +203,21 @@ TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
     EXPECT_EQ(message().find("Bundled arenas"), std::string::npos) << message();
 }
 
+TEST(MissingFiles, FoldersInTheirPlaceAreRefusedWithTheirLine) {
+    Folder const folder;
+    Warnings const warnings;
+    std::string const robots = "objects:\n  robots: {type: pogobot, geometry: disk}\n";
+    auto const message = [&](std::string const& head) {
+        Folder::write("x.yaml", head + robots);
+        return error_of([] { build_world(load_scenario("x.yaml", {}), 1); });
+    };
+    std::filesystem::create_directory("shapes.csv");
+    EXPECT_EQ(message("seed: 1\narena_file: shapes.csv\n"),
+              "x.yaml:2: arena_file: 'shapes.csv' is a folder; expected a file");
+    EXPECT_EQ(message("arena_file: arenas/disk.csv\ninitial_formation: imported\nformation_filename: shapes.csv\n"),
+              "x.yaml:3: formation_filename: 'shapes.csv' is a folder; expected a file");
+}
+
 TEST(BadObjects, NothingStartsOutsideOfTheArenaThoughALampReachesOut) {
     std::string const robots = "  crowd: {type: pogobot, nb: 20}\n";
     std::string const lamp = "  lamp: {type: static_light, geometry: disk, radius: 300, y: 500, x: ";

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from pogosim.command.parser import Parser, complain, finite, guarded, warn, whole
 from pogosim.errors import ToolError
-from pogosim.extensions import let_find_models
+from pogosim.extensions import let_find_models, said
 from pogosim.firmware.making import FirmwareError, made_in, temporary_project
 from pogosim.installation import find_installation
 from pogosim.lines import say
@@ -55,6 +55,21 @@ def shown(value: Any) -> str:
     return " ".join(str(value).split())
 
 
+def setting(text: str) -> tuple[str, Any]:
+    """Return the key and the value that `--set` gives."""
+    from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml  # takes a while
+
+    key, sign, value = text.partition("=")
+    if not key or not sign:
+        raise argparse.ArgumentTypeError(f"expected KEY=VALUE, such as objects.robots.nb=50, found '{text}'")
+    if key.split(".")[0] == "parameters":
+        raise argparse.ArgumentTypeError(f"{key}: both runs have the parameters of the source; change them there")
+    try:
+        return key, parse_yaml(value)
+    except WRONG_VALUES as error:
+        raise argparse.ArgumentTypeError(f"{key}: not YAML: {said(error)}") from None
+
+
 def parser(prog: str) -> Parser:
     """Return the command line."""
     made = Parser(
@@ -69,6 +84,15 @@ def parser(prog: str) -> Parser:
     made.add_argument("-c", "--config", metavar="FILE", type=Path, help="configuration; default: conf/test.yaml in it")
     made.add_argument(
         "-s", "--seed", metavar="N", type=whole(0), help="random seed; default: that of the configuration"
+    )
+    made.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        type=setting,
+        action="append",
+        default=[],
+        dest="settings",
+        help="value of a key of the configuration, such as objects.robots.nb=50; may be repeated",
     )
     made.add_argument("--category", metavar="NAME", default="robots", help="whose robots (default: %(default)s)")
     made.add_argument("--until", metavar="S", type=finite, default=math.inf, help="simulated time to compare, s")
@@ -96,7 +120,7 @@ def compare(options: argparse.Namespace) -> int:
     if options.config is None and not options.program.is_dir():
         raise FirmwareError("expected a configuration: -c CONFIG")
     configuration = options.config or options.program / "conf" / "test.yaml"
-    settings = {} if options.seed is None else {"seed": options.seed}
+    settings = dict(options.settings) | ({} if options.seed is None else {"seed": options.seed})
     try:
         with (
             built(options.program) as (program, firmware),

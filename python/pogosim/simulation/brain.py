@@ -25,8 +25,9 @@ class Brain:
 
     Arrays may be assigned, which copies values into them: `brain.motors = powers`, `brain.leds //= 2`.
 
-    Powers are integers from -1023 to 1023. NumPy cuts off fractions without a word, so a power of 0.8 becomes 0: scale
-    what is from -1 to 1, as in `brain.motors[:, :2] = np.rint(1023 * policy)`.
+    Powers are integers from -1023 to 1023, to which greater ones are cut, with a warning for the first. NumPy cuts off
+    fractions without a word, so a power of 0.8 becomes 0: scale what is from -1 to 1, as in
+    `brain.motors[:, :2] = np.rint(1023 * policy)`.
 
     Arrays belong to a run: ask for them again after `Simulation.reset`. Writing to one of the run before raises
     ValueError (of NumPy: read-only); but not to a part of it, such as `brain.motors[:, 0]`, that was kept.
