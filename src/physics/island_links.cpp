@@ -77,7 +77,9 @@ void IslandLinks::begin_relaxing(std::span<Mover const> movers) {
 }
 
 float IslandLinks::solve(std::span<Mover> movers, bool backwards, bool pushes) {
-    return std::max(springs_and_rods_.solve(movers, backwards, pushes), hinges_.solve(movers, backwards, pushes));
+    // One after the other: the order of arguments is the compiler's.
+    float const most_mm_s = springs_and_rods_.solve(movers, backwards, pushes);
+    return std::max(most_mm_s, hinges_.solve(movers, backwards, pushes));
 }
 
 void IslandLinks::forget_impulses() {

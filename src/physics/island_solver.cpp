@@ -441,8 +441,8 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
     float const converged_mm = links_.empty() ? kConvergedMm : kLinksConvergedMm;
     for (int pass = 0; pass < passes; ++pass) {
         bool const backwards = pass % 2 == 0;
-        float change_mm_s =
-            std::max(membranes_.solve(movers_, backwards, !pushes), links_.solve(movers_, backwards, pushes));
+        float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
+        change_mm_s = std::max(change_mm_s, links_.solve(movers_, backwards, pushes));
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             Contact& contact = contacts_[backwards ? contacts_.size() - 1 - i : i];
             float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
