@@ -73,7 +73,7 @@ void pogosim_run_close(pogosim_run* run);
 
 /// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "is_over" (1: no further step
 /// will be made), "has_failed" (1: a step has failed), "seed", "object_count", "robot_count", "lamp_count",
-/// "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
+/// "link_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Arrays of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
@@ -162,6 +162,46 @@ int pogosim_run_lamp(pogosim_run const* run, size_t lamp, struct pogosim_lamp* f
 /// Switches, dims and moves a lamp. The light on the floor is updated at once.
 int pogosim_run_set_lamp(pogosim_run* run, size_t lamp, struct pogosim_lamp const* setting);
 
+/// What links do: values of `kind`.
+enum pogosim_run_link_kind {
+    POGOSIM_RUN_SPRING = 0,
+    POGOSIM_RUN_ROD = 1,
+    POGOSIM_RUN_HINGE = 2,
+};
+
+/// A link between an object and another one, or a place in the arena.
+struct pogosim_run_link {
+    int32_t kind;
+    int32_t a;             ///< an object
+    int32_t b;             ///< another one; -1: the arena
+    int32_t robot_a;       ///< row of `a` in arrays of robots; -1: it runs no program; ignored when a link is made
+    int32_t robot_b;       ///< that of `b`, likewise
+    int32_t is_cut;        ///< not 0: it does nothing any more; ignored when a link is made
+    double end_a_mm[2];    ///< from the centre of its object, ahead and to its right
+    double end_b_mm[2];    ///< the same; in the arena, a place
+    double rest_mm;        ///< length at rest; made with NaN: as far apart as its ends are
+    double stiffness_n_m;  ///< of a spring, 0 or more
+    double damping_n_s_m;  ///< of a spring, 0 or more
+    double breaking_n;     ///< above 0, may be infinite
+    double least_rad;      ///< of a hinge, at most 0, may be infinite
+    double most_rad;       ///< of a hinge, at least 0, may be infinite
+    double length_mm;      ///< distance of its ends now; ignored when a link is made
+    double tension_n;  ///< force in the last step, positive when it pulls; of a hinge, its magnitude; ignored likewise
+};
+
+/// The links, those that are cut included, up to `room` of them. `count`: how many there are.
+int pogosim_run_links(pogosim_run const* run, struct pogosim_run_link* links, size_t room, size_t* count);
+
+/// What to fill in for a new link: its ends are the centres of its objects, of a hinge the place halfway between them;
+/// without stiffness, damping and limits. `b`: -1: the arena, where `a` is.
+int pogosim_run_new_link(pogosim_run const* run, int32_t kind, size_t a, int64_t b, struct pogosim_run_link* link);
+
+/// Makes a link. `index`: from now on.
+int pogosim_run_add_link(pogosim_run* run, struct pogosim_run_link const* link, size_t* index);
+
+/// Cuts links, for good; none if there is none of one of these indices.
+int pogosim_run_cut_links(pogosim_run* run, uint32_t const* links, size_t count);
+
 /// Sets a column that the program has declared: its value in all rows of an object from now on, unless the program's
 /// callback_export_data sets another one. `object`: negative for all objects.
 int pogosim_run_set_column(pogosim_run* run, int64_t object, char const* name, double value);
@@ -173,8 +213,8 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 /// `levels` has a place for each.
 void pogosim_run_light_levels(pogosim_run const* run, double* levels);
 
-/// A hash of poses, LEDs, light, controllers and random streams, and of how many messages wait; not of their contents,
-/// nor of user data. Equal for runs in the same state.
+/// A hash of poses, links, LEDs, light, controllers and random streams, and of how many messages wait; not of their
+/// contents, nor of user data. Equal for runs in the same state.
 uint64_t pogosim_run_hash(pogosim_run const* run);
 
 /// Brings the data file up to date.

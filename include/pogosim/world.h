@@ -116,6 +116,62 @@ void pogosim_world_lamp_position(uint32_t lamp, double* x_mm, double* y_mm);
 void pogosim_world_set_lamp_position(uint32_t lamp, double x_mm, double y_mm);
 ///@}
 
+// ---- Links ----
+
+/// What a link does.
+typedef enum pogosim_link_kind_t {
+    POGOSIM_SPRING,  ///< pulls its ends together when it is longer than at rest, and pushes them apart when shorter
+    POGOSIM_ROD,     ///< keeps the distance of its ends
+    POGOSIM_HINGE    ///< keeps its ends together; the bodies turn about them
+} pogosim_link_kind_t;
+
+/// In place of the second object of a link: the arena.
+#define POGOSIM_ARENA UINT32_MAX
+
+/// A link between an object and another one, or a place in the arena.
+typedef struct pogosim_link_t {
+    pogosim_link_kind_t kind;  ///< what it does
+    uint32_t a;                ///< an object
+    uint32_t b;                ///< another one, or POGOSIM_ARENA
+    double a_x_mm;             ///< end at `a`, from its centre: ahead
+    double a_y_mm;             ///< to its right
+    double b_x_mm;             ///< end at `b`, likewise; with POGOSIM_ARENA, a place: to the right
+    double b_y_mm;             ///< down
+    double length_mm;  ///< at rest, 0 or more; NaN: as far apart as its ends are when it is made; 0 or NaN for a hinge
+    double stiffness_n_m;  ///< of a spring, 0 or more
+    double damping_n_s_m;  ///< of a spring, against changes of its length, 0 or more
+    double breaking_n;     ///< a force that is larger cuts it; INFINITY: none does
+    double least_rad;      ///< of a hinge: how far `b` may turn against `a`, from how it stands; -INFINITY to 0
+    double most_rad;       ///< 0 to INFINITY
+} pogosim_link_t;
+
+/// How a link is now.
+typedef struct pogosim_link_state_t {
+    double length_mm;  ///< distance of its ends
+    double tension_n;  ///< force in the last step: positive when it pulls; of a hinge, its magnitude
+    bool is_cut;       ///< it does nothing any more
+} pogosim_link_state_t;
+
+/// Number of links, those that are cut included, which keep their index: first those of the configuration.
+/// @range returns 0 or more
+uint32_t pogosim_world_link_count(void);
+/// What a link is, as pogosim_world_add_link() takes it.
+void pogosim_world_link(uint32_t link, pogosim_link_t* found);
+/// How a link is now.
+void pogosim_world_link_state(uint32_t link, pogosim_link_state_t* state);
+/// What to fill in for a new link between two objects, or an object and the arena: its ends are their centres (where
+/// `a` is now, in the arena), of a hinge the place halfway between them; as long as the ends are apart when it is made,
+/// without stiffness and damping, of which a spring needs one; and it neither breaks nor has limits. An object that is
+/// linked to itself or has no body, a membrane, and two that are fixed, are errors.
+/// @range a: an index; b: an index, or POGOSIM_ARENA
+pogosim_link_t pogosim_world_new_link(pogosim_link_kind_t kind, uint32_t a, uint32_t b);
+/// Makes a link, which holds from this time step on, and returns its index. Numbers outside of their range are errors,
+/// as is a rod or a hinge that misses its ends by more than 1 mm.
+/// @range returns an index
+uint32_t pogosim_world_add_link(pogosim_link_t const* link);
+/// Cuts a link, for good. Nothing happens if it is cut already.
+void pogosim_world_cut_link(uint32_t link);
+
 // ---- Data file ----
 
 ///@{

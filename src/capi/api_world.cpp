@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "device/link_edit.hpp"
 #include "device/sensing.hpp"
 #include "device/switched_off.hpp"
 #include "process/crash_handler.hpp"
@@ -17,6 +18,7 @@
 #include "robot/controllers.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
+#include "world/link_places.hpp"
 #include "world/observed_motion.hpp"
 
 using pogosim::ConfigError;
@@ -24,6 +26,9 @@ using pogosim::context;
 using pogosim::DataExport;
 using pogosim::kNone;
 using pogosim::LampSetting;
+using pogosim::Link;
+using pogosim::LinkKind;
+using pogosim::NewLink;
 using pogosim::Object;
 using pogosim::PlacedLamp;
 using pogosim::require_argument;
@@ -144,6 +149,72 @@ void edit_lamp(uint32_t lamp, Change const& change) {
     LampSetting setting = context.world->lamps[lamp].setting;
     change(setting);
     context.services->edit.set_lamp(*context.world, lamp, setting);
+}
+
+/// Does something with links; what they refuse is an error of the call.
+template <class Do>
+auto with_links(char const* function, Do const& act) {
+    decltype(act()) result{};
+    without_exceptions([&] {
+        try {
+            result = act();
+        } catch (ConfigError const& error) {
+            throw ConfigError(fmt::format("{}(): {}", function, error.what()));
+        }
+    });
+    return result;
+}
+
+Link const& link_at(char const* function, uint32_t link) {
+    require_world(function);
+    check_index(function, "link", link, context.world->links.size());
+    return context.world->links[link];
+}
+
+pogosim_link_kind_t kind_of(LinkKind kind) {
+    switch (kind) {
+        case LinkKind::spring:
+            return POGOSIM_SPRING;
+        case LinkKind::rod:
+            return POGOSIM_ROD;
+        case LinkKind::hinge:
+            break;
+    }
+    return POGOSIM_HINGE;
+}
+
+LinkKind kind_of(char const* function, pogosim_link_kind_t kind) {
+    switch (kind) {
+        case POGOSIM_SPRING:
+            return LinkKind::spring;
+        case POGOSIM_ROD:
+            return LinkKind::rod;
+        case POGOSIM_HINGE:
+            return LinkKind::hinge;
+    }
+    without_exceptions([&] {
+        throw ConfigError(fmt::format("{}(): kind: expected POGOSIM_SPRING, POGOSIM_ROD or POGOSIM_HINGE, found {}",
+                                      function, static_cast<int>(kind)));
+    });
+    return LinkKind::spring;
+}
+
+/// The numbers of a link as programs see them.
+pogosim_link_t described(LinkKind kind, std::uint32_t a, std::uint32_t b, Vec2 end_a_mm, Vec2 end_b_mm) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    return {.kind = kind_of(kind),
+            .a = a,
+            .b = b,
+            .a_x_mm = end_a_mm.x,
+            .a_y_mm = end_a_mm.y,
+            .b_x_mm = end_b_mm.x,
+            .b_y_mm = end_b_mm.y,
+            .length_mm = std::numeric_limits<double>::quiet_NaN(),
+            .stiffness_n_m = 0.0,
+            .damping_n_s_m = 0.0,
+            .breaking_n = infinite,
+            .least_rad = -infinite,
+            .most_rad = infinite};
 }
 
 void set_column(char const* function, std::optional<uint32_t> object, char const* name, double value) {
@@ -336,6 +407,63 @@ void pogosim_world_set_lamp_position(uint32_t lamp, double x_mm, double y_mm) {
     PlacedLamp const& found = lamp_at(__func__, lamp);
     Vec2 const place{number(__func__, "x_mm", x_mm), number(__func__, "y_mm", y_mm)};
     edit_lamp(lamp, [&](LampSetting& setting) { setting = moved_to(found, place); });
+}
+
+uint32_t pogosim_world_link_count() {
+    require_world(__func__);
+    return static_cast<uint32_t>(context.world->links.size());
+}
+
+void pogosim_world_link(uint32_t link, pogosim_link_t* found) {
+    Link const& of = link_at(__func__, link);
+    require_argument(found, __func__, "found");
+    World const& world = *context.world;
+    static_assert(POGOSIM_ARENA == kNone);
+    *found = described(of.kind, pogosim::object_of_body(world, of.a), pogosim::object_of_body(world, of.b), of.end_a_mm,
+                       of.end_b_mm);
+    found->length_mm = of.length_mm;
+    found->stiffness_n_m = of.stiffness_n_m;
+    found->damping_n_s_m = of.damping_n_s_m;
+    found->breaking_n = of.breaking_n;
+    found->least_rad = of.least_rad;
+    found->most_rad = of.most_rad;
+}
+
+void pogosim_world_link_state(uint32_t link, pogosim_link_state_t* state) {
+    Link const& of = link_at(__func__, link);
+    require_argument(state, __func__, "state");
+    *state = {.length_mm = length(pogosim::places_of_ends(*context.world, of).span_mm()),
+              .tension_n = of.tension_n,
+              .is_cut = of.is_cut};
+}
+
+pogosim_link_t pogosim_world_new_link(pogosim_link_kind_t kind, uint32_t a, uint32_t b) {
+    require_world(__func__);
+    LinkKind const made = kind_of(__func__, kind);
+    NewLink const link = with_links(__func__, [&] { return pogosim::link_between(*context.world, made, a, b); });
+    return described(made, a, b, link.end_a_mm, link.end_b_mm);
+}
+
+uint32_t pogosim_world_add_link(pogosim_link_t const* link) {
+    require_world(__func__);
+    require_argument(link, __func__, "link");
+    NewLink made{.kind = kind_of(__func__, link->kind), .a = link->a, .b = link->b};
+    made.end_a_mm = {number(__func__, "a_x_mm", link->a_x_mm), number(__func__, "a_y_mm", link->a_y_mm)};
+    made.end_b_mm = {number(__func__, "b_x_mm", link->b_x_mm), number(__func__, "b_y_mm", link->b_y_mm)};
+    if (!std::isnan(link->length_mm)) {
+        made.length_mm = number(__func__, "length_mm", link->length_mm);
+    }
+    made.stiffness_n_m = number(__func__, "stiffness_n_m", link->stiffness_n_m);
+    made.damping_n_s_m = number(__func__, "damping_n_s_m", link->damping_n_s_m);
+    made.breaking_n = static_cast<float>(link->breaking_n);
+    made.least_rad = static_cast<float>(link->least_rad);
+    made.most_rad = static_cast<float>(link->most_rad);
+    return with_links(__func__, [&] { return pogosim::add_link(*context.world, made); });
+}
+
+void pogosim_world_cut_link(uint32_t link) {
+    link_at(__func__, link);
+    without_exceptions([&] { pogosim::cut_link(*context.world, link); });
 }
 
 void pogosim_world_set_column(char const* name, double value) {

@@ -96,7 +96,7 @@ Status append_time(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
     return Status::OK();
 }
 
-constexpr std::array<BuiltInColumn, 9> kBuiltInColumns{{
+constexpr std::array<BuiltInColumn, 10> kBuiltInColumns{{
     {"time", arrow::float64, append_time, nullptr},
     {"robot_category", arrow::utf8, append_category, nullptr},
     {"robot_id", arrow::int32, append_member<arrow::Int32Builder, &ObjectRow::id>, nullptr},
@@ -107,6 +107,8 @@ constexpr std::array<BuiltInColumn, 9> kBuiltInColumns{{
     {"subpart_id", arrow::int16, append_member<arrow::Int16Builder, &ObjectRow::subpart>,
      &DataFileOptions::subpart_column},
     {"led_rgb", arrow::int32, append_member<arrow::Int32Builder, &ObjectRow::led_rgb>, &DataFileOptions::led_column},
+    {"tension", arrow::float32, append_member<arrow::FloatBuilder, &ObjectRow::tension_n>,
+     &DataFileOptions::tension_column},
 }};
 
 bool is_null(CellValue const& cell) {

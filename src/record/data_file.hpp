@@ -24,6 +24,7 @@ struct DataFileOptions {
     std::optional<std::vector<std::string>> fields{};  // allow-list of columns, built-in and user; absent: all
     bool subpart_column = false;                       // adds subpart_id
     bool led_column = false;                           // adds led_rgb
+    bool tension_column = false;                       // adds tension
     std::int64_t flush_row_count = 1048576;            // rows per record batch, > 0
     std::vector<std::pair<std::string, std::string>> metadata{};  // of the schema, UTF-8
 };
@@ -39,11 +40,12 @@ struct ObjectRow {
     float angle_rad = 0.0F;  // (-pi, pi]; NaN for walls and membranes
     std::int16_t subpart = -1;
     std::int32_t led_rgb = 0;  // head LED as 0xRRGGBB
+    float tension_n = 0.0F;    // of its link with the largest one, see tensions_of_bodies()
 };
 
 /// Columns: time float64 (rounded to 1 ns), robot_category utf8, robot_id int32, pogobot_ticks int64, x, y, angle
-/// float32, [subpart_id int16], [led_rgb int32], then the user's. Every failure to write throws OutputError naming the
-/// path and the system's reason; nothing is lost silently.
+/// float32, [subpart_id int16], [led_rgb int32], [tension float32], then the user's. Every failure to write throws
+/// OutputError naming the path and the system's reason; nothing is lost silently.
 ///
 /// In a child after fork(), it writes nothing.
 class DataFile {

@@ -129,20 +129,31 @@ void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, flo
     }
 }
 
+/// Width of the edge, pixels; 0: it is too small for one.
+float edge_of(Scene const& scene, Figure const& figure) {
+    float const size_px = scene.to_pixels(inner_radius(figure.shape));
+    return size_px < kLeastEdgedRadiusPx ? 0.0F : std::max(kEdge * size_px, kThinnestEdgePx);
+}
+
+/// A mark where it heads.
+void draw_mark(Scene const& scene, Figure const& figure, Vec2 at_mm) {
+    if (figure.has_axis && edge_of(scene, figure) > 0.0F) {
+        float const size_px = scene.to_pixels(inner_radius(figure.shape));
+        float const reach = reach_mm(figure.shape, {1.0F, 0.0F});
+        scene.canvas.line(scene.to_pixels(at_mm + 0.25F * reach * figure.axis),
+                          scene.to_pixels(at_mm + 0.95F * reach * figure.axis),
+                          std::max(kMark * size_px, kThinnestMarkPx), Cap::butt, contrast_to(figure.colour));
+    }
+}
+
 void draw_figure(Scene const& scene, Figure const& figure, bool lateral_leds) {
     scene.for_each_image(figure.position_mm, figure.radius_mm, [&](Vec2 at_mm) {
-        float const size_px = scene.to_pixels(inner_radius(figure.shape));
-        float const edge_px = size_px < kLeastEdgedRadiusPx ? 0.0F : std::max(kEdge * size_px, kThinnestEdgePx);
+        float const edge_px = edge_of(scene, figure);
         if (edge_px > 0.0F) {
             draw_shape(scene, figure, at_mm, 0.5F * edge_px, palette::kEdge);
         }
         draw_shape(scene, figure, at_mm, -0.5F * edge_px, figure.colour);
-        if (figure.has_axis && edge_px > 0.0F) {
-            float const reach = reach_mm(figure.shape, {1.0F, 0.0F});
-            scene.canvas.line(scene.to_pixels(at_mm + 0.25F * reach * figure.axis),
-                              scene.to_pixels(at_mm + 0.95F * reach * figure.axis),
-                              std::max(kMark * size_px, kThinnestMarkPx), Cap::butt, contrast_to(figure.colour));
-        }
+        draw_mark(scene, figure, at_mm);
         if (lateral_leds && figure.led != nullptr) {
             draw_lateral_leds(scene, figure, at_mm, 0.5F * edge_px);
         }
@@ -215,6 +226,14 @@ void draw_glows(Scene const& scene) {
         if (figure.glows) {
             draw_glow(scene, figure);
         }
+    });
+}
+
+void draw_headings(Scene const& scene) {
+    for_each_rigid_object(scene, [&](Object const& object) {
+        Figure const figure = figure_of(scene, object);
+        scene.for_each_image(figure.position_mm, figure.radius_mm,
+                             [&](Vec2 at_mm) { draw_mark(scene, figure, at_mm); });
     });
 }
 

@@ -30,8 +30,11 @@ struct Inspection {
     float heading_rad = 0.0F;  // (-pi, pi]
     float speed_mm_s = 0.0F;   // mean of the last kSpeedWindowS
     float angular_velocity_rad_s = 0.0F;
-    float moved_mm = 0.0F;             // in a straight line
-    double moved_during_s = 0.0;       // duration of that motion: 1 s, or the whole run if it is shorter
+    float moved_mm = 0.0F;         // in a straight line
+    double moved_during_s = 0.0;   // duration of that motion: 1 s, or the whole run if it is shorter
+    std::uint32_t links = 0;       // to other bodies, or the arena, that are not cut
+    float least_tension_n = 0.0F;  // of these
+    float most_tension_n = 0.0F;
     std::vector<std::string> touches;  // "wall", "robot 7", "obstacles 3"
     std::uint32_t ticks = 0;
     double clock_s = 0.0;                    // the robot's own: when its next tick is due

@@ -20,12 +20,21 @@ void draw_glows(Scene const& scene);
 /// Rigid objects with a mark where they head; lateral LEDs on the rim.
 void draw_bodies(Scene const& scene, bool lateral_leds);
 
+/// The marks where rigid objects head, once more, above what has been drawn over them.
+void draw_headings(Scene const& scene);
+
 /// Lamps as small suns, the outline of what they light, and beams.
 void draw_lamps(Scene const& scene, Coverage& scratch);
 
 /// Links between robots in range. The half next to a sender has the colour of its emitter; a two-way link is a whole
 /// line, a one-way link fades from the middle on and ends in an arrow head at the listener.
 void draw_links(Scene const& scene);
+
+/// From -1, pushed, to 1, pulled.
+Pixel tension_colour(float load);
+
+/// Links between bodies: springs and rods as lines from end to end, hinges as dots, in the colour of their tension.
+void draw_body_links(Scene const& scene);
 
 /// A ring around a robot; a line along the outline of a wall or membrane.
 void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch);

@@ -77,6 +77,10 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
     }
     draw_membranes(scene);
     draw_bodies(scene, options.lateral_leds);
+    if (!snapshot.body_links.empty()) {
+        draw_body_links(scene);
+        draw_headings(scene);
+    }
     draw_lamps(scene, impl_->scratch);
     if (options.selected_robot) {
         draw_selection(scene, *options.selected_robot, impl_->scratch);

@@ -42,6 +42,15 @@ struct InfraredLink {
     std::uint8_t emitters_back = 0;  // bit d: emitter d of `to` reaches `from`; 0: `to` only listens
 };
 
+/// A link between two bodies, or a body and the arena.
+struct BodyLink {
+    LinkKind kind = LinkKind::spring;
+    bool is_pinned = false;  // to the arena, at `to_mm`
+    Vec2 from_mm;
+    Vec2 to_mm;         // may lie beyond the seam of a periodic arena
+    float load = 0.0F;  // -1 to 1: tension by the breaking force, or by the largest tension; negative: it pushes
+};
+
 /// Which parts of a snapshot that cost time are wanted.
 struct SnapshotParts {
     bool light = false;
@@ -62,6 +71,7 @@ struct Snapshot {
     std::shared_ptr<LightMap const> light;  // null: not wanted
     std::vector<InfraredLink> links;        // empty: not wanted
     std::shared_ptr<Trails const> trails;   // null: not wanted
+    std::vector<BodyLink> body_links{};
 };
 
 }  // namespace pogosim

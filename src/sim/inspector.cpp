@@ -32,6 +32,18 @@ void add_motion(World const& world, Object const& object, Inspection& inspection
     inspection.angular_velocity_rad_s = observed_motion(world, object).angular_velocity_rad_s;
 }
 
+/// Links of the object's body: a membrane has none.
+void add_links(World const& world, Object const& object, Inspection& inspection) {
+    for (Link const& link : world.links) {
+        if (!link.is_cut && (link.a == object.body || link.b == object.body)) {
+            bool const is_first = inspection.links++ == 0;
+            inspection.least_tension_n =
+                is_first ? link.tension_n : std::min(inspection.least_tension_n, link.tension_n);
+            inspection.most_tension_n = is_first ? link.tension_n : std::max(inspection.most_tension_n, link.tension_n);
+        }
+    }
+}
+
 void add_devices(Devices const& devices, std::size_t robot, Inspection& inspection) {
     std::ranges::copy(devices.motors[robot].power, inspection.motor_power.begin());
     std::ranges::copy(devices.motors[robot].direction, inspection.motor_direction.begin());
@@ -64,6 +76,7 @@ Inspection Inspector::inspect(std::uint32_t robot) {
     add_devices(world_.devices, robot, inspection);
     if (object.body != kNone) {
         add_motion(world_, object, inspection);
+        add_links(world_, object, inspection);
         add_sensors(world_, robot, inspection);
         auto const [shortly_mm, shortly_s] = recent_motion_.of(robot, Inspection::kSpeedWindowS);
         inspection.speed_mm_s = shortly_s > 0.0 ? shortly_mm / static_cast<float>(shortly_s) : 0.0F;

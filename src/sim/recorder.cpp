@@ -10,6 +10,7 @@
 #include "process/crash_message.hpp"
 #include "sim/output_files.hpp"
 #include "sim/run_metadata.hpp"
+#include "world/link_tension.hpp"
 
 namespace pogosim {
 
@@ -139,8 +140,12 @@ void Recorder::make_data_file() {
     options.fields = output().fields;
     options.subpart_column = std::ranges::any_of(world_.categories, has_subparts);
     options.led_column = output().led_column;
+    options.tension_column = !world_.links.empty() || !world_.link_categories.empty();
     options.flush_row_count = output().flush_row_count;
     options.metadata = metadata();
+    if (std::string links = LinkRecord::initial(world_); !links.empty()) {
+        options.metadata.emplace_back("links", std::move(links));
+    }
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     note_data_file(options.path, DataFileState::open);
     empty_cells_.assign(options.user_columns.size(), CellValue());
@@ -153,6 +158,7 @@ std::optional<UserFailure> Recorder::record_if_due() {
     if (!data_file_) {
         return std::nullopt;
     }
+    links_.follow(world_);
     std::optional<double> const due_s = row_times_.due(world_);
     row_time_s_ = due_s.value_or(row_time_s_);
     return due_s ? record_rows() : std::nullopt;
@@ -205,6 +211,7 @@ void Recorder::add_to_table(std::uint32_t object) {
 /// Rows that follow each other are written together.
 void Recorder::write_table() {
     std::size_t const count = table_.object.size();
+    std::vector<float> const tension_n = tensions_of_bodies(world_);
     built_in_.clear();
     std::size_t first = 0;
     auto const write_until = [&](std::size_t end) {
@@ -214,6 +221,7 @@ void Recorder::write_table() {
     for (std::size_t row = 0; row < count; ++row) {
         Object const& object = world_.objects[table_.object[row]];
         built_in_.push_back(row_of(world_, object, row_time_s_, ticks_of(object)));
+        built_in_.back().tension_n = object.body != kNone ? tension_n[object.body] : 0.0F;
         if (has_subparts(world_.categories[object.category])) {
             write_until(row + 1);
             record_subparts(object, built_in_.back());
@@ -274,6 +282,9 @@ void Recorder::add_metadata(std::string const& key, std::string const& value) {
 
 void Recorder::close() {
     if (data_file_) {
+        if (std::string const changes = links_.changes(world_); !changes.empty()) {
+            data_file_->add_metadata("link_changes", changes);
+        }
         data_file_->close();
         is_complete_ = true;
         note_data_file(output().data_filename, DataFileState::complete);

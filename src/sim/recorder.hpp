@@ -14,6 +14,7 @@
 #include "process/crash_handler.hpp"
 #include "record/data_file.hpp"
 #include "robot/controllers.hpp"
+#include "sim/link_record.hpp"
 #include "sim/message_recorder.hpp"
 #include "sim/recorded_rows.hpp"
 #include "sim/row_times.hpp"
@@ -102,9 +103,10 @@ private:
     std::unique_ptr<MessageRecorder> messages_;  // null: there is no message log
     bool is_opened_ = false;                     // by open(): rows come into it
     bool is_complete_ = false;
-    RecordedRows* shown_ = nullptr;       // of the inspector; null: rows are not shown
-    SavedColumns* kept_ = nullptr;        // null: not kept
-    DataTable table_;                     // of the present save
+    RecordedRows* shown_ = nullptr;  // of the inspector; null: rows are not shown
+    SavedColumns* kept_ = nullptr;   // null: not kept
+    DataTable table_;                // of the present save
+    LinkRecord links_;
     std::vector<ObjectRow> built_in_;     // of its rows
     std::vector<CellValue> empty_cells_;  // user columns of subparts
     RowTimes row_times_;

@@ -526,6 +526,24 @@ void Simulation::set_lamp(std::size_t lamp, LampSetting const& setting) {
     touches_.add(Touch::lamp, world_.time_s());
 }
 
+std::uint32_t Simulation::add_link(NewLink const& link) {
+    std::uint32_t const index = pogosim::add_link(world_, link);
+    touches_.add(Touch::link, world_.time_s());
+    return index;
+}
+
+void Simulation::cut_links(std::span<std::uint32_t const> links) {
+    for (std::uint32_t const link : links) {
+        link_at(world_, link);
+    }
+    for (std::uint32_t const link : links) {
+        cut_link(world_, link);
+    }
+    if (!links.empty()) {
+        touches_.add(Touch::link, world_.time_s());
+    }
+}
+
 void Simulation::set_column(std::optional<std::uint32_t> object, std::string const& name, double value) {
     if (!services_.data.is_declared) {
         throw ConfigError(fmt::format("column '{}': the run records no rows (enable_data_logging: false)", name));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "comms/ir_channel.hpp"
 #include "config/scenario.hpp"
 #include "config/user_parameters.hpp"
+#include "device/link_edit.hpp"
 #include "device/step_chips.hpp"
 #include "firmware/observer.hpp"
 #include "light/lighting.hpp"
@@ -135,6 +137,14 @@ public:
 
     /// Sets a lamp (index into World::lamps), and the light accordingly. The data file says that the run was touched.
     void set_lamp(std::size_t lamp, LampSetting const& setting);
+
+    /// Makes a link, see device/link_edit.hpp, and returns its index. The data file says that the run was touched.
+    /// Throws ConfigError.
+    std::uint32_t add_link(NewLink const& link);
+
+    /// Cuts links (indices into World::links) for good. The data file says that the run was touched. Throws ConfigError
+    /// and cuts none, if there is none of an index.
+    void cut_links(std::span<std::uint32_t const> links);
 
     /// The value of a user column from now on, in the rows of all objects or of one (index into World::objects), see
     /// HeldValues. Throws ConfigError.

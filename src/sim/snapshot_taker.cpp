@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/infrared.hpp"
+#include "sim/body_links.hpp"
 
 namespace pogosim {
 
@@ -20,7 +21,8 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
                       .lamps = lighting_.marks(),
                       .light = parts.light ? light() : nullptr,
                       .links = {},
-                      .trails = parts.trails ? std::make_shared<Trails const>(trails_) : nullptr};
+                      .trails = parts.trails ? std::make_shared<Trails const>(trails_) : nullptr,
+                      .body_links = drawn_links(world_)};
     if (world_.periodic) {
         std::ranges::transform(bodies.position_mm, snapshot.position_mm.begin(),
                                [this](Vec2 position_mm) { return wrapped(world_, position_mm); });

@@ -195,6 +195,13 @@ std::uint64_t state_hash(World const& world, Controllers const& controllers,
             hash.add(setting.moved_mm);
         }
     }
+    for (Link const& link : world.links) {
+        hash.add(static_cast<int>(link.kind));
+        hash.add(link.a);
+        hash.add(link.b);
+        hash.add(static_cast<int>(link.is_cut));
+        hash.add(link.tension_n);
+    }
     if (controllers.own_memory() != nullptr) {
         add_own_memory(hash, controllers);
     }

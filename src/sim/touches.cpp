@@ -10,7 +10,7 @@ constexpr double kSameMoveS = 0.5;
 
 // In the order of Touch.
 constexpr std::array kWhat{"objects moved by hand", "robots clicked", "robots switched off or on", "lamps set",
-                           "parameters set",        "columns set"};
+                           "parameters set",        "columns set",    "links made or cut"};
 
 std::string times(int n) {
     return n == 1 ? "once" : fmt::format("{} times", n);

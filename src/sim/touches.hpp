@@ -17,7 +17,8 @@ enum class Touch : std::uint8_t {
     alive,      // a robot was switched off or on
     lamp,       // a lamp was set
     parameter,  // a variable of the program was set
-    column      // a column of the data file was set
+    column,     // a column of the data file was set
+    link        // a link was made or cut
 };
 
 class Touches {
@@ -36,7 +37,7 @@ public:
 private:
     int total() const { return std::accumulate(count_.begin(), count_.end(), 0); }
 
-    std::array<int, static_cast<std::size_t>(Touch::column) + 1> count_{};
+    std::array<int, static_cast<std::size_t>(Touch::link) + 1> count_{};
     double first_s_ = 0.0;
     std::uint32_t moved_object_ = kNone;  // by the last touch
     double last_move_s_ = 0.0;

@@ -84,6 +84,12 @@ std::string decimals(float value, int count) {
     return text.starts_with('-') && is_zero ? text.substr(1) : text;
 }
 
+/// "-0.02 to 0.15 N", or "0.15 N" of one link.
+std::string tension_text(Inspection const& robot) {
+    std::string const most = decimals(robot.most_tension_n, 3) + " N";
+    return robot.links == 1 ? most : fmt::format("{} to {}", decimals(robot.least_tension_n, 3), most);
+}
+
 void draw_motion(Inspection const& robot) {
     row("category", robot.category);
     if (robot.has_body) {
@@ -96,6 +102,9 @@ void draw_motion(Inspection const& robot) {
                                           : "moved in the last second",
             fmt::format("{:.1f} mm", robot.moved_mm));
         row("touches", joined(robot.touches));
+        if (robot.links > 0) {
+            row("links", fmt::format("{}, tension {}", robot.links, tension_text(robot)));
+        }
         row("turning", decimals(robot.angular_velocity_rad_s, 2) + " rad/s");
         row("acceleration", fmt::format("{}, {} m/s\u00b2", decimals(robot.acceleration_m_s2.x, 2),
                                         decimals(robot.acceleration_m_s2.y, 2)));

@@ -11,8 +11,8 @@
 //                     start_rad of bodies; clears robots.command[i].pending; tension and is_cut of links
 //   record, render and view only read
 //
-// Callbacks of the whole run, which run before the robots, also write poses, switched_off and the settings of lamps
-// (pogosim/world.h).
+// Callbacks of the whole run, which run before the robots, also write poses, switched_off, the settings of lamps, and
+// links with their link_categories (pogosim/world.h).
 //
 // No stage keeps a version of its own. What is written between two steps takes effect:
 //

@@ -137,6 +137,9 @@ static void global_step(void) {
     pogosim_world_pose(0, &pose);
     pogosim_world_velocity(0, &velocity);
     pogosim_world_led(0, 0, &r, &g, &b);
+    pogosim_link_t link = pogosim_world_new_link(POGOSIM_SPRING, 0, POGOSIM_ARENA);
+    link.stiffness_n_m = 1.0;
+    pogosim_world_add_link(&link);
     FOR_NULL(world_category_size.category, pogosim_world_category_size(NULL))
     FOR_NULL(world_object.category, pogosim_world_object(NULL, 0))
     FOR_NULL(world_pose.pose, pogosim_world_pose(0, NULL))
@@ -146,6 +149,9 @@ static void global_step(void) {
     FOR_NULL(world_led.b, pogosim_world_led(0, 0, &r, &g, NULL))
     FOR_NULL(world_lamp_position.x_mm, pogosim_world_lamp_position(0, NULL, &y_mm))
     FOR_NULL(world_lamp_position.y_mm, pogosim_world_lamp_position(0, &x_mm, NULL))
+    FOR_NULL(world_add_link.link, pogosim_world_add_link(NULL))
+    FOR_NULL(world_link.found, pogosim_world_link(0, NULL))
+    FOR_NULL(world_link_state.state, pogosim_world_link_state(0, NULL))
     FOR_NULL(world_set_column.name, pogosim_world_set_column(NULL, 1.0))
     FOR_NULL(world_set_object_column.name, pogosim_world_set_object_column(0, NULL, 1.0))
 }

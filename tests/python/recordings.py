@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -45,4 +46,42 @@ def write(path: Path, rows: pd.DataFrame, objects: dict[str, Any] | None = None,
     }
     table = pa.Table.from_pandas(rows, preserve_index=False).replace_schema_metadata(metadata)
     feather.write_feather(table, path)
+    return path
+
+
+def link_table(**columns: Any) -> dict[str, Any]:
+    """Metadata of two links: robots 0 and 1 by a spring from its front, robot 2 and a place by a rod."""
+    return {
+        "objects": [["robots", 0], ["robots", 1], ["robots", 2]],
+        "categories": [{"name": "skin", "drawn": True}],
+        "category": [0, 0],
+        "kind": ["spring", "rod"],
+        "a": [0, 2],
+        "b": [1, -1],
+        "end_a_mm": [[20, 0], [0, 0]],
+        "end_b_mm": [[0, 0], [500, 900]],
+        "rest_mm": [100, 500],
+        "stiffness_n_m": [2, 0],
+        "damping_n_s_m": [0, 0],
+        "breaking_n": [None, None],
+        **columns,
+    }
+
+
+def linked(
+    path: Path,
+    links: dict[str, Any] | None = None,
+    changes: dict[str, Any] | None = None,
+    rows: pd.DataFrame | None = None,
+    **settings: Any,
+) -> Path:
+    """A data file of three robots (recordings.walkers) with links."""
+    write(path, walkers() if rows is None else rows, **settings)
+    found = feather.read_table(path)
+    metadata = dict(found.schema.metadata)
+    if links is not None:
+        metadata[b"links"] = json.dumps(links).encode()
+    if changes is not None:
+        metadata[b"link_changes"] = json.dumps(changes).encode()
+    feather.write_feather(pa.Table.from_batches(found.to_batches()).replace_schema_metadata(metadata), path)
     return path

@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from pogosim.film.command import main
 from pogosim.picture.links import proximity_pairs
 from pogosim.picture.palette import PALETTE
-from recordings import walkers, write
+from recordings import link_table, linked, walkers, write
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: on macOS, none is installed for tests")
@@ -322,3 +322,26 @@ def test_page_of_a_minute_at_60_records_per_second_is_small_and_the_same_each_ti
     assert first == again
     assert len(first) < 5_000_000
     assert not re.search(rb"https?://", first)
+
+
+def test_links_between_bodies_follow_them_until_they_are_cut(browser: Browser, tmp_path: Path) -> None:
+    made = {**link_table(), "time_s": [9, 9]}
+    changes = {"made": made, "cut": {"link": [0], "time_s": [1.5]}}
+    page = show(browser, page_of(linked(tmp_path / "run.feather", link_table(), changes)))
+    page.evaluate("replay.setTime(1.0)")
+    spring, rod = page.evaluate("replay.bodyLinks")
+    np.testing.assert_allclose(spring["from"], [166.667, 220.0], atol=0.1)  # from the front of a robot that heads down
+    np.testing.assert_allclose(spring["to"], [500.0, 200.0], atol=0.1)
+    assert (spring["kind"], spring["load"]) == ("spring", 1)
+    np.testing.assert_allclose(rod["to"], [500.0, 900.0], atol=0.1)
+    assert rod["load"] == 0
+    x, y = page.evaluate("replay.screen(1)")
+    box = page.locator("#arena").bounding_box()
+    assert box is not None
+    scale = page.evaluate("replay.screen(2)[0] - replay.screen(1)[0]") / 333.333
+    shown = pixel(page, box["x"] + x - 100.0 * scale, box["y"] + y + 6.0 * scale)  # 100 mm from its end
+    np.testing.assert_allclose(shown, [255, 122, 26], atol=60)  # pulled
+    page.evaluate("replay.setTime(1.5)")
+    assert [link["kind"] for link in page.evaluate("replay.bodyLinks")] == ["rod"]
+    assert page.said == []  # type: ignore[attr-defined]
+    page.close()

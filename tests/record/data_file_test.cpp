@@ -72,10 +72,11 @@ private:
 // ---- content --------------------------------------------------------------------------------------------------------
 
 TEST_F(DataFileContent, BuiltInCellsComeBackAsTheyWereGiven) {
-    DataFile file({.path = path("a.feather"), .subpart_column = true, .led_column = true});
+    DataFile file({.path = path("a.feather"), .subpart_column = true, .led_column = true, .tension_column = true});
     ObjectRow row = robot_row(3, 1.5);
     row.subpart = 12;
     row.led_rgb = 0x19FF00;
+    row.tension_n = -0.5F;
     file.append(row, {});
     file.close();
 
@@ -90,6 +91,7 @@ TEST_F(DataFileContent, BuiltInCellsComeBackAsTheyWereGiven) {
     EXPECT_EQ(data.text("angle", 0), "-1.25");
     EXPECT_EQ(data.text("subpart_id", 0), "12");
     EXPECT_EQ(data.text("led_rgb", 0), std::to_string(0x19FF00));
+    EXPECT_EQ(data.text("tension", 0), "-0.5");
 }
 
 TEST_F(DataFileContent, WallHasNanPoseAndNoTicks) {

@@ -270,6 +270,66 @@ bool looks_like(Pixel pixel, Pixel colour, int tolerance = 40) {
     return true;
 }
 
+// ---- Links between bodies ----
+
+Canvas painted_with(BodyLink const& link, bool is_periodic = false) {
+    World world = square_world();
+    world.periodic = is_periodic;
+    Snapshot snapshot = snapshot_of(world);
+    snapshot.body_links = {link};
+    return painted(snapshot, kNothingWritten, {1600, 1600});
+}
+
+TEST(BodyLink, GoesFromEndToEndInTheColourOfItsTension) {
+    BodyLink link{.from_mm = {200, 500}, .to_mm = {800, 500}};
+    for (auto const& [load, colour] : {std::pair{0.0F, palette::kLinkAtRest}, std::pair{1.0F, palette::kLinkPulled},
+                                       std::pair{-1.0F, palette::kLinkPushed}, std::pair{7.0F, palette::kLinkPulled}}) {
+        link.load = load;
+        Canvas const canvas = painted_with(link);
+        EXPECT_EQ(at_mm(canvas, {201, 500}), colour) << load;
+        EXPECT_EQ(at_mm(canvas, {500, 500}), colour) << load;
+        EXPECT_EQ(at_mm(canvas, {799, 500}), colour) << load;
+        EXPECT_EQ(at_mm(canvas, {500, 510}), palette::kFloor) << load;
+        EXPECT_EQ(at_mm(canvas, {190, 500}), palette::kFloor) << load;
+    }
+}
+
+TEST(BodyLink, ColoursOfTensionsAreBetweenThoseOfTheirLimits) {
+    EXPECT_EQ(tension_colour(0.0F), palette::kLinkAtRest);
+    Pixel const half = tension_colour(0.5F);
+    EXPECT_NEAR(static_cast<float>(half >> 8U & 0xFFU),
+                0.5F * static_cast<float>((palette::kLinkAtRest >> 8U & 0xFFU) + (palette::kLinkPulled >> 8U & 0xFFU)),
+                1.0F);
+    EXPECT_EQ(half >> 24U, 0xFFU);
+}
+
+TEST(BodyLink, IsDrawnAboveRobotsAndBelowTheirHeadings) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    Snapshot snapshot = snapshot_of(world);
+    snapshot.body_links = {{.from_mm = {500, 500}, .to_mm = {600, 500}, .load = 1.0F}};
+    Canvas const canvas = painted(snapshot, kNothingWritten, {1600, 1600});
+    EXPECT_EQ(at_mm(canvas, {502, 500}), palette::kLinkPulled);
+    EXPECT_EQ(at_mm(canvas, {515, 500}), contrast_to(led_colour({})));  // where it heads
+    EXPECT_EQ(at_mm(canvas, {540, 500}), palette::kLinkPulled);
+}
+
+TEST(BodyLink, HingeIsADot) {
+    Canvas const canvas = painted_with({.kind = LinkKind::hinge, .from_mm = {500, 500}, .to_mm = {500, 500}});
+    EXPECT_EQ(at_mm(canvas, {500, 500}), palette::kLinkAtRest);
+    EXPECT_EQ(at_mm(canvas, {503, 500}), palette::kLinkAtRest);
+    EXPECT_EQ(at_mm(canvas, {500, 503}), palette::kLinkAtRest);
+    EXPECT_EQ(at_mm(canvas, {510, 500}), palette::kFloor);
+}
+
+TEST(BodyLink, AcrossTheSeamShowsOnBothSides) {
+    Canvas const canvas = painted_with({.from_mm = {950, 500}, .to_mm = {1050, 500}}, true);
+    EXPECT_EQ(at_mm(canvas, {990, 500}), palette::kLinkAtRest);
+    EXPECT_EQ(at_mm(canvas, {20, 500}), palette::kLinkAtRest);
+    EXPECT_EQ(at_mm(canvas, {60, 500}), palette::kFloor);
+    EXPECT_EQ(at_mm(canvas, {1010, 500}), palette::kPaper);
+}
+
 TEST(Link, HasTheColourOfEachSendersEmitterOnItsHalf) {
     for (LinkLayer const layer : {LinkLayer::below, LinkLayer::above}) {
         PaintOptions options = kNothingWritten;

@@ -75,6 +75,31 @@ TEST(Inspector, ShowsPoseSpeedAndMotors) {
     EXPECT_EQ(robot.led[4], (Rgb{1, 2, 3}));
 }
 
+TEST(Inspector, ShowsTheTensionsOfItsLinks) {
+    use_program(idle, idle);
+    Simulation simulation(testing::test_program(), square_scene({robot_at({200, 500}), robot_at({300, 500})}), {});
+    Inspector& inspector = simulation.inspector();
+    EXPECT_EQ(inspector.inspect(0).links, 0U);
+    World& world = simulation.world();
+    auto const add = [&world](std::uint32_t a, std::uint32_t b, float tension_n) {
+        Link link;
+        link.a = a;
+        link.b = b;
+        link.tension_n = tension_n;
+        world.links.push_back(link);
+    };
+    add(0, 1, 0.5F);
+    add(0, kNone, 0.25F);
+    add(1, kNone, -1.0F);
+    add(1, 0, 9.0F);
+    world.links.back().is_cut = true;
+    Inspection const inspection = inspector.inspect(0);
+    EXPECT_EQ(inspection.links, 2U);
+    EXPECT_EQ(inspection.least_tension_n, 0.25F);
+    EXPECT_EQ(inspection.most_tension_n, 0.5F);
+    EXPECT_EQ(inspector.inspect(1).least_tension_n, -1.0F);
+}
+
 TEST(Inspector, ShowsLightWithoutBiasAndNoise) {
     SpotSpec left_to_right;
     left_to_right.shape.kind = ShapeKind::global;

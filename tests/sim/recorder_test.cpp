@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/link_edit.hpp"
 #include "record/scratch.hpp"
 #include "support/objects.hpp"
 #include "support/scenes.hpp"
@@ -133,6 +134,77 @@ TEST(WrittenWorld, LightsAndColoursOfOthersAreSensedShownAndRecorded) {
     EXPECT_EQ(snapshot.led[1][0], (Rgb{.r = 0, .g = 2, .b = 3}));
     simulation.finish();
     EXPECT_EQ(read_back(folder / "a.feather").text("led_rgb", 6), std::to_string(0x000203));
+}
+
+// ---- Links ----
+
+std::string metadata_of(ReadBack const& data, std::string const& key) {
+    auto const found = data.table->schema()->metadata()->Get(key);
+    return found.ok() ? *found : "";
+}
+
+NewLink weak_spring(std::uint32_t a, std::uint32_t b) {
+    NewLink link{.kind = LinkKind::spring, .a = a, .b = b};
+    link.length_mm = 60.0F;
+    link.stiffness_n_m = 1e-6F;
+    return link;
+}
+
+TEST(Recorder, RunWithLinksHasTheirTensionsAndTheseInItsMetadata) {
+    TemporaryFolder const folder;
+    use_exporting_program(nullptr);
+    Simulation simulation(test_program(), recorded_scene(folder / "a.feather"), {});
+    NewLink pinned = weak_spring(1, kNone);
+    pinned.end_b_mm = {500, 20};
+    pinned.breaking_n = 2.0F;
+    add_link(simulation.world(), weak_spring(0, 4));
+    add_link(simulation.world(), pinned);
+    add_link(simulation.world(), weak_spring(0, 1));
+    simulation.world().links[0].tension_n = 0.25F;
+    simulation.world().links[2].tension_n = -0.5F;
+    ASSERT_FALSE(simulation.start());
+    simulation.finish();
+    ReadBack const data = read_back(folder / "a.feather");
+    EXPECT_EQ(data.text("tension", 0), "-0.5");  // the largest, as its amount counts
+    EXPECT_EQ(data.text("tension", 1), "-0.5");
+    EXPECT_EQ(data.text("tension", 2), "0");
+    EXPECT_EQ(data.text("tension", 4), "0.25");
+    EXPECT_EQ(metadata_of(data, "links"),
+              R"({"objects":[["robots",0],["robots",1],["passive",65535]],"categories":[{"name":"made","drawn":true}],)"
+              R"("category":[0,0,0],"kind":["spring","spring","spring"],"a":[0,1,0],"b":[2,-1,1],)"
+              R"("end_a_mm":[[0,0],[0,0],[0,0]],"end_b_mm":[[0,0],[500,20],[0,0]],"rest_mm":[60,60,60],)"
+              R"("stiffness_n_m":[1e-06,1e-06,1e-06],"damping_n_s_m":[0,0,0],"breaking_n":[null,2,null]})");
+    EXPECT_EQ(metadata_of(data, "link_changes"), "");
+}
+
+TEST(Recorder, RunWithoutLinksHasNeitherColumnNorMetadataOfThem) {
+    TemporaryFolder const folder;
+    use_exporting_program(nullptr);
+    ASSERT_EQ(Simulation(test_program(), recorded_scene(folder / "a.feather"), {}).run(), ExitCode::done);
+    ReadBack const data = read_back(folder / "a.feather");
+    EXPECT_EQ(data.table->GetColumnByName("tension"), nullptr);
+    EXPECT_EQ(metadata_of(data, "links") + metadata_of(data, "link_changes"), "");
+}
+
+TEST(Recorder, MetadataSayWhenLinksWereMadeAndCut) {
+    TemporaryFolder const folder;
+    use_exporting_program(nullptr);
+    Simulation simulation(test_program(), recorded_scene(folder / "a.feather"), {});
+    add_link(simulation.world(), weak_spring(0, 1));
+    ASSERT_FALSE(simulation.start());
+    ASSERT_FALSE(simulation.step());
+    add_link(simulation.world(), weak_spring(2, 3));
+    ASSERT_FALSE(simulation.step());
+    ASSERT_FALSE(simulation.step());
+    cut_link(simulation.world(), 0);
+    ASSERT_FALSE(run_for(simulation, 0.1));
+    simulation.finish();
+    ReadBack const data = read_back(folder / "a.feather");
+    EXPECT_EQ(metadata_of(data, "link_changes"),
+              R"({"made":{"objects":[["robots",2],["robots",3]],"categories":[{"name":"made","drawn":true}],)"
+              R"("category":[0],"kind":["spring"],"a":[0],"b":[1],"end_a_mm":[[0,0]],"end_b_mm":[[0,0]],)"
+              R"("rest_mm":[60],"stiffness_n_m":[1e-06],"damping_n_s_m":[0],"breaking_n":[null],"time_s":[0.02]},)"
+              R"("cut":{"link":[0],"time_s":[0.04]}})");
 }
 
 }  // namespace

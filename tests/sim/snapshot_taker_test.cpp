@@ -179,5 +179,47 @@ TEST(Snapshot, TakingItChangesNothingInTheRun) {
     EXPECT_EQ(watched.channel().receptions(), receptions);
 }
 
+TEST(Snapshot, LinksBetweenBodiesHaveTheLoadOfTheirTension) {
+    use_program(idle, idle);
+    Simulation simulation(testing::test_program(),
+                          square_scene({robot_at({200, 500}), robot_at({300, 500}), robot_at({400, 500})}), {});
+    World& world = simulation.world();
+    world.link_categories = {{.name = "skin"}, {.name = "hidden", .are_drawn = false}};
+    Link const spring{.a = 0, .b = 1, .end_a_mm = {20, 0}, .end_b_mm = {}, .tension_n = 0.5F};
+    Link breaking = spring;
+    breaking.breaking_n = 2.0F;
+    Link const pushed{
+        .kind = LinkKind::rod, .a = 2, .b = kNone, .end_a_mm = {}, .end_b_mm = {400, 600}, .tension_n = -1.0F};
+    Link cut = spring;
+    cut.is_cut = true;
+    Link hidden = spring;
+    hidden.link_category = 1;
+    world.links = {spring, breaking, pushed, cut, hidden};
+    std::vector<BodyLink> const links = simulation.snapshots().take({}).body_links;
+    ASSERT_EQ(links.size(), 3U);
+    EXPECT_EQ(links[0].from_mm, (Vec2{220, 500}));
+    EXPECT_EQ(links[0].to_mm, (Vec2{300, 500}));
+    EXPECT_EQ(links[0].load, 0.5F);  // of the largest tension
+    EXPECT_FALSE(links[0].is_pinned);
+    EXPECT_EQ(links[1].load, 0.25F);  // of its breaking force
+    EXPECT_EQ(links[2].load, -1.0F);
+    EXPECT_EQ(links[2].kind, LinkKind::rod);
+    EXPECT_TRUE(links[2].is_pinned);
+    EXPECT_EQ(links[2].to_mm, (Vec2{400, 600}));
+}
+
+TEST(Snapshot, LinkBetweenBodiesGoesOnBeyondTheSeam) {
+    use_program(idle, idle);
+    Simulation simulation(testing::test_program(), square_scene({robot_at({30, 500}), robot_at({960, 500})}), {});
+    World& world = simulation.world();
+    world.periodic = true;
+    world.link_categories = {{.name = "skin"}};
+    world.links = {{.a = 0, .b = 1, .end_a_mm = {}, .end_b_mm = {}}};
+    std::vector<BodyLink> const links = simulation.snapshots().take({}).body_links;
+    ASSERT_EQ(links.size(), 1U);
+    EXPECT_EQ(links[0].from_mm.x, 30.0F);
+    EXPECT_EQ(links[0].to_mm.x, 960.0F - world.arena.bounds.size().x);
+}
+
 }  // namespace
 }  // namespace pogosim

@@ -380,6 +380,21 @@ TEST(Supervisor, RefusedCallsEndTheRunWithOneMessage) {
               "pogosim_world_set_pose(): x_mm: expected a finite number, found nan"},
              {[] { pogosim_world_light_at(0, 1e300); },
               "pogosim_world_light_at(): y_mm: expected a finite number, found 1e+300"},
+             {[] { pogosim_world_cut_link(0); }, "pogosim_world_cut_link(): there is no link 0: the run has none"},
+             {[] { pogosim_world_new_link(POGOSIM_SPRING, 0, 0); },
+              "pogosim_world_new_link(): object 0 cannot be linked to itself"},
+             {[] {
+                  pogosim_link_t link = pogosim_world_new_link(POGOSIM_SPRING, 0, 1);
+                  link.stiffness_n_m = -1.0;
+                  pogosim_world_add_link(&link);
+              },
+              "pogosim_world_add_link(): stiffness: expected a finite number of at least 0, found -1"},
+             {[] {
+                  pogosim_link_t link = pogosim_world_new_link(POGOSIM_ROD, 0, 1);
+                  link.a_x_mm = NAN;
+                  pogosim_world_add_link(&link);
+              },
+              "pogosim_world_add_link(): a_x_mm: expected a finite number, found nan"},
              {[] { pogosim_world_object("pucks", 0); },
               "pogosim_world_object(): no object has the category 'pucks'; those of the run: 'robots', 'passive'"},
              {[] { pogosim_world_object("robots", 1); },
@@ -396,6 +411,50 @@ TEST(Supervisor, RefusedCallsEndTheRunWithOneMessage) {
         EXPECT_EQ(failure->what, message);
         EXPECT_EQ(failure->code, ExitCode::usage);
     }
+}
+
+TEST(Supervisor, MakesReadsAndCutsLinks) {
+    static pogosim_link_t found;
+    static pogosim_link_state_t state;
+    use_supervised(idle, idle, [] {
+        if (pogosim_world_time() > 0.0) {
+            pogosim_world_cut_link(0);
+            return;
+        }
+        pogosim_link_t link = pogosim_world_new_link(POGOSIM_SPRING, 1, 0);
+        link.a_x_mm = 40.0;
+        link.stiffness_n_m = 0.5;
+        link.breaking_n = 2.0;
+        EXPECT_EQ(pogosim_world_add_link(&link), 0U);
+        link = pogosim_world_new_link(POGOSIM_HINGE, 0, POGOSIM_ARENA);
+        link.most_rad = 0.5;
+        EXPECT_EQ(pogosim_world_add_link(&link), 1U);
+        EXPECT_EQ(pogosim_world_link_count(), 2U);
+        pogosim_world_link(0, &found);
+        pogosim_world_link_state(0, &state);
+        pogosim_world_link(1, &link);
+        EXPECT_EQ(link.b, POGOSIM_ARENA);
+        EXPECT_EQ(link.b_x_mm, 200.0);
+        EXPECT_EQ(link.most_rad, 0.5);
+    });
+    Simulation simulation(testing::test_program(),
+                          square_scene({robot_at({200, 200}), at(passive_object({.radius_mm = 40.0F}), {300, 200})}),
+                          {});
+    ASSERT_FALSE(simulation.start());
+    ASSERT_FALSE(simulation.step());
+    EXPECT_EQ(found.kind, POGOSIM_SPRING);
+    EXPECT_EQ(found.a, 1U);
+    EXPECT_EQ(found.b, 0U);
+    EXPECT_EQ(found.a_x_mm, 40.0);
+    EXPECT_EQ(found.stiffness_n_m, 0.5);
+    EXPECT_EQ(found.breaking_n, 2.0);
+    EXPECT_EQ(found.length_mm, state.length_mm);
+    EXPECT_FALSE(state.is_cut);
+    EXPECT_FALSE(simulation.world().links[0].is_cut);
+    ASSERT_FALSE(run_for(simulation, 0.1));
+    EXPECT_TRUE(simulation.world().links[0].is_cut);
+    EXPECT_FALSE(simulation.world().links[1].is_cut);
+    EXPECT_FALSE(simulation.is_touched());
 }
 
 TEST(Supervisor, RobotsDoNotSeeTheWorld) {

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.picture.images import seen_places
-from pogosim.picture.palette import PALETTE
+from pogosim.film.packing import hex_colour
+from pogosim.picture.body_links import PlacedLinks
+from pogosim.picture.images import Box, lines_between, seen_places
+from pogosim.picture.palette import PALETTE, tension_colours
 
 BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in replay.js
 
@@ -48,13 +50,34 @@ def heading(category: dict[str, Any], x: float, y: float, angle: float) -> str:
     return f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
 
 
-def first_picture(head: dict[str, Any], poses: npt.NDArray[np.float64], colours: Sequence[str]) -> str:
+def link_paths(links: PlacedLinks, box: Box | None) -> list[str]:
+    """Return links between bodies as lines and dots, with an edge each."""
+    colours = [hex_colour(colour) for colour in tension_colours(links.load)]
+    line = 'stroke-linecap="round" vector-effect="non-scaling-stroke"'
+    paths = []
+    for kind, width in (("rod", 3.0), ("spring", 2.0), ("hinge", 7.2)):
+        of_kind = np.flatnonzero(links.kind == kind)
+        segments, which = lines_between(links.start[of_kind], links.end[of_kind], box)
+        for (start, end), i in zip(segments, of_kind[which], strict=True):
+            path = f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
+            for colour, extra in ((PALETTE["edge"], 1.2), (colours[i], 0.0)):
+                paths.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width + extra:g}" {line}/>')
+    return paths
+
+
+def first_picture(
+    head: dict[str, Any],
+    poses: npt.NDArray[np.float64],
+    colours: Sequence[str],
+    links: PlacedLinks | None = None,
+) -> str:
     """Draw the arena and its objects.
 
     Args:
         head: What the page knows of the run, see replay_data().
         poses: x, y (mm) and angle (rad) of each object, shape (n, 3). NaN: there is none yet.
         colours: Colours of each object.
+        links: Links between bodies.
     """
     (left, top), (right, bottom) = head["low"], head["high"]
     box = (np.array(head["low"]), np.array(head["high"])) if head["periodic"] else None
@@ -79,6 +102,7 @@ def first_picture(head: dict[str, Any], poses: npt.NDArray[np.float64], colours:
         if box
         else "<g>",
         *(f'<g fill="{colour}" stroke="{PALETTE["edge"]}">{"".join(own)}</g>' for colour, own in shapes.items()),
+        *(link_paths(links, box) if links else ()),
         *(f'<path d="{"".join(own)}" stroke="{ink}" stroke-width="2" {line}/>' for ink, own in headings.items()),
         "</g>",
         f'<path d="{floor}" fill="none" stroke="{PALETTE["wall"]}" stroke-width="3" {line}/>',

@@ -15,10 +15,11 @@ from matplotlib.path import Path as Outline
 from pogosim.film.brush import Brush, Disks, outline_of
 from pogosim.film.timeline import Rows, timeline_of
 from pogosim.picture import layers
+from pogosim.picture.body_links import BodyLinks, placed_links
 from pogosim.picture.images import lines_between, seen_places
-from pogosim.picture.layers import GLOWS
+from pogosim.picture.layers import GLOWS, HINGE_PT, LINK_EDGE_PT, LINK_PT, PIN_PT
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
-from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER
+from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER, tension_colours
 from pogosim.picture.swarm import OBJECT, RGB, Recording
 from pogosim.scene import MEMBRANES, TALKERS, Category, Floats
 
@@ -28,6 +29,8 @@ Numbers = npt.NDArray[np.int64]
 TRAIL_STEPS, TRAIL_STEPS_OF_ALL, MIN_TRAIL_STEPS = 60, 24_000, 24
 TRAIL_PIECES, TRAIL_PIECES_OF_ALL, MIN_TRAIL_PIECES = 24, 12_000, 12
 MAX_TRAIL_COLOURS = 64  # of more, similar ones are one
+
+LOADS = 32  # shades of links between bodies, pulled or pushed
 
 EDGE_PT = 0.8
 TICK_PT = 1.6
@@ -64,6 +67,7 @@ class Moving:
 
         # Colour and category of each row.
         rows = self.bodies.rows
+        self.objects = rows[OBJECT].to_numpy(dtype=np.int64)
         self.colours = rows[RGB].to_numpy(dtype=float)
         names, self.kind = np.unique(rows["robot_category"].to_numpy(dtype=str), return_inverse=True)
         self.categories = [swarm.category(str(name)) for name in names]
@@ -121,6 +125,8 @@ class Moving:
             dots()
         for own, which in shown:
             self.draw_category(brush, own, place[which], angle[which], self.colours[now[which]])
+        if self.swarm.links is not None:
+            self.draw_body_links(brush, self.swarm.links, time_s)
         for own, which in shown:
             self.draw_ticks(brush, own, place[which], angle[which], self.colours[now[which]])
         brush.finish()
@@ -181,6 +187,32 @@ class Moving:
         if len(pairs):
             lines = outline_of(self.pixels(link_segments(place, pairs, self.box)), False)
             brush.draw(lines, line=(*to_rgb(LINK), 0.5), width_pt=0.8, on_floor=True)
+
+    def draw_body_links(self, brush: Brush, links: BodyLinks, time_s: float) -> None:
+        """Draw links between bodies as pictures do."""
+        now, place, angle = self.bodies.poses_at(time_s)
+        found = placed_links(links, self.objects[now], place, angle, time_s, self.box)
+        shades, shade = by_colour(tension_colours(np.round(LOADS * found.load) / LOADS))
+        for kind, width in LINK_PT:
+            segments, which = lines_between(found.start, found.end, self.box)
+            is_kind = (found.kind == kind)[which]
+            segments, own = self.pixels(segments[is_kind]), shade[which[is_kind]]
+            if len(segments):
+                edge = outline_of(segments, False)
+                width_pt = width + 2.0 * LINK_EDGE_PT
+                brush.draw(edge, line=(*to_rgb(EDGE), 1.0), width_pt=width_pt, cap="round", on_floor=self.is_cut)
+            for number in np.unique(own):
+                path = outline_of(segments[own == number], False)
+                brush.draw(path, line=(*shades[number], 1.0), width_pt=width, cap="round", on_floor=self.is_cut)
+        is_hinge = found.kind == "hinge"
+        dots = ((is_hinge, found.start, HINGE_PT), (found.is_pinned & ~is_hinge, found.end, PIN_PT))
+        for chosen, points, size_pt in dots:
+            unit = brush.renderer.dpi / 72.0
+            which, places = seen_places(points[chosen], HINGE_PT * unit / self.scale[0], self.box)
+            if len(places):
+                disks = Disks(self.pixels(places), on_floor=self.is_cut)
+                disks.add((0.5 * size_pt + LINK_EDGE_PT) * unit, np.array(to_rgb(EDGE)))
+                brush.stamp_disks(disks.add(0.5 * size_pt * unit, shades[shade[chosen]][which]))
 
     def draw_glows(self, brush: Brush, own: Category, place: Floats, angle: Floats, colours: Floats) -> None:
         """Draw how lit LEDs light up the floor around."""

@@ -607,12 +607,82 @@ function drawBodies() {
             tick.lineTo(px + 0.95 * cos, py + 0.95 * sin);
         });
     }
+    drawBodyLinks();
     pen.lineCap = "butt";
     ticks.forEach((paths, category) => paths.forEach((path, bright) => {
         pen.strokeStyle = bright ? palette.edge : palette.paper;
         pen.lineWidth = Math.min(2.2 * pixel, head.categories[category].reach / 4);
         pen.stroke(path);
     }));
+}
+
+// Where links between bodies are now, as in body_links.py: those that hold, with their load from -1 to 1.
+function placedLinks() {
+    const links = head.bodyLinks, placed = [];
+    if (!links) return placed;
+    const late = state.time + 1e-9 * Math.max(1, Math.abs(state.time));
+    const place = (object, [u, v]) => {
+        if (object === -1) return [u, v];
+        const {x, y, angle} = poses[object];
+        const [cos, sin] = angle === angle ? [Math.cos(angle), Math.sin(angle)] : [1, 0];
+        return [x + u * cos - v * sin, y + u * sin + v * cos];
+    };
+    let largest = links.leastTension;
+    for (let i = 0; i < links.a.length; i++) {
+        const [a, b, breaking] = [links.a[i], links.b[i], links.breaking[i]];
+        if (links.made[i] > late || links.cut[i] <= late || a < 0 || b < -1) continue;
+        const [x, y] = place(a, links.endA[i]), [toX, toY] = place(b, links.endB[i]);
+        const [dx, dy] = nearestImage(toX - x, toY - y);
+        if (dx !== dx || dy !== dy) continue;
+        const stretch = Math.hypot(dx, dy) - links.rest[i];
+        const tension = links.kind[i] === "spring" ? links.stiffness[i] * stretch : 0;
+        if (breaking === null) largest = Math.max(largest, Math.abs(tension));
+        placed.push({x, y, dx, dy, kind: links.kind[i], isPinned: b === -1, tension, breaking});
+    }
+    for (const link of placed) {
+        const most = link.breaking === null ? largest : link.breaking;
+        link.load = Math.min(Math.max(link.tension / most, -1), 1);
+    }
+    return placed;
+}
+
+const channels = (colour) => colour.match(/\w\w/g).map((text) => parseInt(text, 16));
+
+function tensionColour(load) {
+    const [from, to] = [palette.link_at_rest, load < 0 ? palette.link_pushed : palette.link_pulled].map(channels);
+    return `rgb(${from.map((own, i) => Math.round(own + Math.abs(load) * (to[i] - own))).join(",")})`;
+}
+
+function drawDot(x, y, radius, colour) {
+    pen.beginPath();
+    pen.arc(x, y, (radius + 0.6) / camera.scale, 0, 2 * Math.PI);
+    pen.fillStyle = palette.edge;
+    pen.fill();
+    pen.beginPath();
+    pen.arc(x, y, radius / camera.scale, 0, 2 * Math.PI);
+    pen.fillStyle = colour;
+    pen.fill();
+}
+
+function drawBodyLinks() {
+    pen.lineCap = "round";
+    for (const {x, y, dx, dy, kind, isPinned, load} of placedLinks()) {
+        const colour = tensionColour(load);
+        forEachImage(x + dx / 2, y + dy / 2, Math.hypot(dx, dy) / 2 + 4 / camera.scale, (ox, oy) => {
+            const [px, py] = [x + ox, y + oy];
+            if (kind === "hinge") return drawDot(px, py, 3.6, colour);
+            const width = kind === "rod" ? 3 : 2;
+            for (const [own, extra] of [[palette.edge, 1.2], [colour, 0]]) {
+                pen.strokeStyle = own;
+                pen.lineWidth = (width + extra) / camera.scale;
+                pen.beginPath();
+                pen.moveTo(px, py);
+                pen.lineTo(px + dx, py + dy);
+                pen.stroke();
+            }
+            if (isPinned) drawDot(px + dx, py + dy, 2.6, colour);
+        });
+    }
 }
 
 // A membrane whose dots the file does not have.
@@ -944,6 +1014,9 @@ window.replay = {
     get colouring() { return colouring.name; },
     get columns() { return columns.map((column) => column.name); },
     get links() { return linkedPairs().map(({from, to}) => [from, to]); },
+    get bodyLinks() {
+        return placedLinks().map(({x, y, dx, dy, kind, load}) => ({from: [x, y], to: [x + dx, y + dy], kind, load}));
+    },
     count, times: head.times,
     play: () => setPlaying(true),
     pause: () => setPlaying(false),

@@ -21,8 +21,10 @@ from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.lines import counted
 from pogosim.outputs import partial_output
 from pogosim.picture import layers
+from pogosim.picture.body_links import ARENA, LEAST_TENSION_N, N_PER_MM, PlacedLinks, placed_links
 from pogosim.picture.colouring import scale_of
 from pogosim.picture.figure import notes, title
+from pogosim.picture.links import box_of
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import OBJECT, RGB, Recording, coloured
@@ -113,9 +115,11 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
         "lamps": lamp_data(recording),
         "lights": light_tables(packer, recording, bodies),
         "membranes": membrane_tables(packer, recording, bodies, span_s),
+        "bodyLinks": body_link_data(recording, bodies),
         "palette": PALETTE,
     }
-    picture = first_picture(head, first_poses(bodies), first_colours(head, base, codes[0]))
+    poses = first_poses(bodies)
+    picture = first_picture(head, poses, first_colours(head, base, codes[0]), first_links(recording, bodies, poses))
     return head, packer.packed(), picture, warnings
 
 
@@ -124,6 +128,17 @@ def first_poses(bodies: Timeline) -> npt.NDArray[np.float64]:
     rows = bodies.known[0]
     poses = np.column_stack([bodies.position, bodies.angle])[np.maximum(rows, 0)]
     return np.where((rows >= 0)[:, None], poses, np.nan)
+
+
+def first_links(recording: Recording, bodies: Timeline, poses: npt.NDArray[np.float64]) -> PlacedLinks | None:
+    """Links between bodies at the first time."""
+    swarm = recording.last
+    if swarm.links is None:
+        return None
+    there = np.isfinite(poses[:, 0])
+    numbers = bodies.objects[OBJECT].to_numpy(dtype=np.int64)[there]
+    position, angle = poses[there, :2], poses[there, 2]
+    return placed_links(swarm.links, numbers, position, angle, float(bodies.times_s[0]), box_of(swarm))
 
 
 def first_colours(head: dict[str, Any], base: dict[str, Any], codes: npt.NDArray[np.uint16]) -> list[str]:
@@ -275,6 +290,28 @@ def light_tables(packer: Packer, recording: Recording, bodies: Timeline) -> list
         opacity = layers.light_opacity(swarm, time_s, LIGHT_CELLS)
         lights.append([int(index), packer.add(np.round(opacity * 255.0).astype(np.uint16).reshape(1, -1))])
     return lights
+
+
+def body_link_data(recording: Recording, bodies: Timeline) -> dict[str, Any] | None:
+    """Return the links between bodies, by the number of their objects; None if there are none."""
+    links = recording.last.links
+    if links is None:
+        return None
+    number = {int(own): i for i, own in enumerate(bodies.objects[OBJECT].to_numpy(dtype=int))}
+    last_s = 2.0 * float(bodies.times_s[-1]) + 1.0  # of links that are not cut
+    return {
+        "a": [number.get(int(one), -2) for one in links.a],
+        "b": [number.get(int(one), -2) if one != ARENA else -1 for one in links.b],
+        "kind": [str(one) for one in links.kind],
+        "endA": np.round(links.end_a, 3).tolist(),
+        "endB": np.round(links.end_b, 3).tolist(),
+        "rest": np.round(links.rest, 3).tolist(),
+        "stiffness": (N_PER_MM * links.stiffness).tolist(),  # N per mm
+        "breaking": [float(one) if math.isfinite(one) else None for one in links.breaking],
+        "made": links.made.tolist(),
+        "cut": np.minimum(links.cut, last_s).tolist(),
+        "leastTension": LEAST_TENSION_N,
+    }
 
 
 def membrane_tables(

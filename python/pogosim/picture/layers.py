@@ -11,9 +11,21 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import PathPatch
 
+from pogosim.picture.body_links import placed_at
 from pogosim.picture.images import Box, joined, lines_between, seen_places
 from pogosim.picture.links import box_of, links_at_end
-from pogosim.picture.palette import DARK_LED, DARK_WALL, EDGE, FLOOR, LAMPLIGHT, LINK, MAX_LAMPLIGHT, PAPER, WALL
+from pogosim.picture.palette import (
+    DARK_LED,
+    DARK_WALL,
+    EDGE,
+    FLOOR,
+    LAMPLIGHT,
+    LINK,
+    MAX_LAMPLIGHT,
+    PAPER,
+    WALL,
+    tension_colours,
+)
 from pogosim.picture.swarm import OBJECT, RGB, Swarm
 from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, floor_outline, light_levels
 
@@ -22,6 +34,9 @@ MAX_SNAPSHOTS = 1500
 
 WALL_PT = 2.2
 GLOWS = ((1.75, 0.05), (1.5, 0.08), (1.25, 0.13))  # shares of the radius of a robot, and opacities
+
+LINK_PT = (("rod", 2.2), ("spring", 1.4))  # widths
+HINGE_PT, PIN_PT, LINK_EDGE_PT = 5.2, 3.6, 0.5
 
 LIGHT_CELLS = 240  # along either side of the arena
 
@@ -301,6 +316,41 @@ def draw_links(axes: Axes, segments: Floats, floor: PathPatch) -> None:
     lines.set_clip_path(floor)
 
 
+def draw_body_links(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
+    """Draw springs and rods between bodies as lines, hinges and ends in the arena as dots, coloured by tension.
+
+    They are above bodies, and below the ticks that say where these head.
+    """
+    if swarm.links is None:
+        return
+    rows = swarm.rows.groupby(OBJECT).tail(1)
+    placed_now = placed_at(swarm.links, rows, OBJECT, swarm.end_s, box_of(swarm))
+    colours = tension_colours(placed_now.load)
+    for kind, width in LINK_PT:
+        of_kind = np.flatnonzero(placed_now.kind == kind)
+        segments, which = lines_between(placed_now.start[of_kind], placed_now.end[of_kind], box_of(swarm))
+        for own, extra in ((EDGE, 2.0 * LINK_EDGE_PT), (colours[of_kind[which]], 0.0)):
+            lines = LineCollection(list(segments), colors=own, linewidths=width + extra, capstyle="round", zorder=4.6)
+            axes.add_collection(lines)
+            cut_off(lines, swarm, floor)
+    reach = HINGE_PT / points_per_mm(axes)
+    for chosen, points, size in (
+        (placed_now.kind == "hinge", placed_now.start, HINGE_PT),
+        (placed_now.is_pinned & (placed_now.kind != "hinge"), placed_now.end, PIN_PT),
+    ):
+        which, places = seen_places(points[chosen], reach, box_of(swarm))
+        dots = axes.scatter(
+            places[:, 0],
+            places[:, 1],
+            s=size**2,
+            c=colours[chosen][which],
+            edgecolors=EDGE,
+            linewidths=LINK_EDGE_PT,
+            zorder=4.7,
+        )
+        cut_off(dots, swarm, floor)
+
+
 def draw_scene(axes: Axes, swarm: Swarm, tail_s: float | None = None, links: bool = False) -> None:
     """Draw a run into axes, which then show its arena in true proportions.
 
@@ -320,4 +370,5 @@ def draw_scene(axes: Axes, swarm: Swarm, tail_s: float | None = None, links: boo
         draw_links(axes, links_at_end(swarm), floor)
     draw_membranes(axes, swarm, floor)
     draw_bodies(axes, swarm, floor)
+    draw_body_links(axes, swarm, floor)
     draw_border(axes, swarm)

@@ -25,6 +25,7 @@ LAMPLIGHT = to_rgb(PALETTE["lamplight"])
 MAX_LAMPLIGHT: float = PALETTE["brightest_lamplight"]  # opacity over the floor where it is brightest
 LEDS = (PALETTE["dimmest_led"], PALETTE["brightest_led"])  # values between which brightness differs
 LEDS_ON_SCREEN = (PALETTE["dimmest_led_on_screen"], PALETTE["brightest_led_on_screen"])  # 0 to 255
+TENSION = np.array([to_rgb(PALETTE[name]) for name in ("link_pushed", "link_at_rest", "link_pulled")])
 LINK: str = PALETTE["link_by_all_emitters"]
 
 
@@ -37,6 +38,12 @@ def led_brightness(led: npt.ArrayLike) -> Floats:
     values = np.asarray(led, dtype=float)
     lit = np.interp(values, LEDS, LEDS_ON_SCREEN) / 255.0
     return np.where(values > 0, lit, 0.0)
+
+
+def tension_colours(load: npt.ArrayLike) -> Floats:
+    """Colours of links between bodies, shape (n, 3), 0 to 1, by their load: -1 (pushed) to 1 (pulled), shape (n,)."""
+    values = np.asarray(load, dtype=float)
+    return np.stack([np.interp(values, (-1.0, 0.0, 1.0), channel) for channel in TENSION.T], axis=-1)
 
 
 def led_colours(led_rgb: npt.ArrayLike) -> Floats:

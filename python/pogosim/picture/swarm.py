@@ -15,9 +15,10 @@ from pogosim.errors import PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import with_categories
 from pogosim.outputs import PathLike
+from pogosim.picture.body_links import BodyLinks, read_body_links
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
 from pogosim.picture.palette import NO_LED, led_colours
-from pogosim.picture.selection import checked, one_run
+from pogosim.picture.selection import checked, numbers_runs, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
 from pogosim.scene import (
@@ -60,6 +61,7 @@ class Swarm:
     end_s: float
     is_periodic: bool = False
     top_speed_mm_s: float | None = None  # of the robots that drive; None: the file does not say
+    links: BodyLinks | None = None  # between bodies
     colouring: Colouring | None = None  # what colours mean; None: LEDs, or the only category of a file without
 
     @property
@@ -162,7 +164,9 @@ def read_recording(
     missing = {"time", "x", "y"} - set(rows.columns)
     if missing:
         raise PictureError(f"it has no column {', '.join(sorted(missing))} (see data_logger_fields)")
-    rows, polygons, left_out = one_run(checked(with_exact_times(rows)), metadata, run, combination)
+    rows = checked(with_exact_times(rows))
+    several = numbers_runs(rows, metadata)  # whose links the file does not tell apart
+    rows, polygons, left_out = one_run(rows, metadata, run, combination)
     rows = rows[is_near(rows)]
     if color_by not in (None, SPEED, "led_rgb"):
         checked_column(rows, str(color_by))
@@ -193,9 +197,17 @@ def read_recording(
         end_s=float(objects["time"].iloc[-1]),
         is_periodic=is_periodic,
         top_speed_mm_s=top_speed_mm_s,
+        links=None if several else read_body_links(metadata, object_numbers(objects)),
         colouring=colouring,
     )
     return Recording(last, rows[is_wall], left_out)
+
+
+def object_numbers(rows: pd.DataFrame) -> dict[tuple[str, int], int]:
+    """Return the numbers of objects, by category and id."""
+    first = rows.drop_duplicates(OBJECT)
+    keys = zip(first["robot_category"], first["robot_id"], first[OBJECT], strict=True)
+    return {(str(category), int(own)): int(number) for category, own, number in keys if pd.notna(own)}
 
 
 def with_defaults(rows: pd.DataFrame) -> pd.DataFrame:

@@ -108,6 +108,29 @@ class LampState(ctypes.Structure):
     )
 
 
+class LinkState(ctypes.Structure):
+    """`struct pogosim_run_link`."""
+
+    _fields_ = (
+        ("kind", c_int32),
+        ("a", c_int32),
+        ("b", c_int32),
+        ("robot_a", c_int32),
+        ("robot_b", c_int32),
+        ("is_cut", c_int32),
+        ("end_a_mm", c_double * 2),
+        ("end_b_mm", c_double * 2),
+        ("rest_mm", c_double),
+        ("stiffness_n_m", c_double),
+        ("damping_n_s_m", c_double),
+        ("breaking_n", c_double),
+        ("least_rad", c_double),
+        ("most_rad", c_double),
+        ("length_mm", c_double),
+        ("tension_n", c_double),
+    )
+
+
 PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_host_error": (c_char_p, ()),
     "pogosim_host_version": (c_char_p, ()),
@@ -128,6 +151,10 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_set_alive": (c_int, (c_void_p, c_size_t, c_int)),
     "pogosim_run_lamp": (c_int, (c_void_p, c_size_t, POINTER(LampState))),
     "pogosim_run_set_lamp": (c_int, (c_void_p, c_size_t, POINTER(LampState))),
+    "pogosim_run_links": (c_int, (c_void_p, c_void_p, c_size_t, POINTER(c_size_t))),
+    "pogosim_run_new_link": (c_int, (c_void_p, c_int32, c_size_t, c_int64, POINTER(LinkState))),
+    "pogosim_run_add_link": (c_int, (c_void_p, POINTER(LinkState), POINTER(c_size_t))),
+    "pogosim_run_cut_links": (c_int, (c_void_p, c_void_p, c_size_t)),
     "pogosim_run_set_column": (c_int, (c_void_p, c_int64, c_char_p, c_double)),
     "pogosim_run_set_parameter": (c_int, (c_void_p, c_char_p, c_char_p)),
     "pogosim_run_columns": (c_char_p, (c_void_p,)),

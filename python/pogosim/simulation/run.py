@@ -27,6 +27,7 @@ from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
 from pogosim.simulation.firmware_variables import USER_DATA, Variable, variables_of
 from pogosim.simulation.library import OVER, check, library
+from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
 from pogosim.simulation.user_data import user_data_type
@@ -481,6 +482,24 @@ class Simulation:
         return Columns(self._run)
 
     @property
+    def links(self) -> npt.NDArray[Any]:
+        """Links between bodies, those that are cut included: `sim.links["tension_n"]`.
+
+        A structured array of shape (links,), a copy of now, in the order in which they were made. Its fields:
+
+        - kind: "spring", "rod" or "hinge".
+        - a, b: indices in `objects`; b is -1 for a place in the arena.
+        - robot_a, robot_b: rows in arrays of robots, such as `positions`; -1: none.
+        - end_a_mm, end_b_mm: shape (links, 2); from the centre of the object, ahead and to its right, or a place.
+        - rest_mm, stiffness_n_m, damping_n_s_m, breaking_n, least_rad, most_rad: as `link` takes them, the force and
+          the angles infinite where there is no limit.
+        - length_mm: distance of its ends.
+        - tension_n: force in the last step, positive when it pulls; of a hinge, its magnitude.
+        - is_cut: whether it does nothing any more.
+        """
+        return links_of(self._run)
+
+    @property
     def user_data(self) -> npt.NDArray[Any]:
         """USERDATA of the robots, as a structured array: `sim.user_data["age"]`. Shape (robots,).
 
@@ -632,6 +651,70 @@ class Simulation:
         number = float(value) if isinstance(value, (bool, np.bool_)) else given.number(column, value)
         with self._busy():
             check(library().pogosim_run_set_column(self._run.pointer, index, column.encode(), number))
+
+    def link(
+        self,
+        a: WorldObject | int,
+        b: WorldObject | int | tuple[float, float],
+        kind: str = "spring",
+        *,
+        end_a: tuple[float, float] | None = None,
+        end_b: tuple[float, float] | None = None,
+        length: float | None = None,
+        stiffness: float = 0.0,
+        damping: float = 0.0,
+        breaking_force: float = math.inf,
+        limits: tuple[float, float] | None = None,
+    ) -> int:
+        """Link two objects, or an object and a place in the arena. The link holds from the next step on.
+
+        Args:
+            a: An object or its index in `objects`.
+            b: Another one; or a place, mm.
+            kind: "spring", "rod" or "hinge".
+            end_a: Where it is attached, mm from the centre of `a`: ahead and to its right. None: its centre; of a hinge
+                between two objects, halfway between their centres.
+            end_b: The same of `b`, if that is an object.
+            length: At rest, mm, at least 0; None: as far apart as its ends are now. A hinge has none.
+            stiffness: N/m, of a spring, at least 0.
+            damping: N s/m, of a spring, against changes of its length, at least 0. A spring needs one of both.
+            breaking_force: N, above 0: a larger force cuts it.
+            limits: Least and greatest angle of a hinge, rad, by which `b` may turn against `a`, clockwise on the
+                screen, from how it stands now. At most and at least 0.
+
+        Returns:
+            Its index in `links`.
+
+        Raises:
+            ConfigurationError: A value is out of its range; an object has no body, is a membrane, is fixed as the other
+                end is, or is linked to itself; a rod or a hinge misses its ends by more than 1 mm.
+        """
+        with self._busy():
+            return make_link(
+                self._run,
+                a,
+                b,
+                kind,
+                end_a=end_a,
+                end_b=end_b,
+                length=length,
+                stiffness=stiffness,
+                damping=damping,
+                breaking_force=breaking_force,
+                limits=limits,
+            )
+
+    def cut(self, links: int | npt.ArrayLike) -> None:
+        """Cut links, for good. They keep their place in `links`.
+
+        Args:
+            links: An index, an array of indices, or an array of booleans, one for each link.
+
+        Raises:
+            ConfigurationError: There is no link of an index; none is cut.
+        """
+        with self._busy():
+            cut_links(self._run, links)
 
     def _set_parameter(self, name: str, value: Any) -> None:
         name = given.text("a parameter", name)

@@ -1,0 +1,143 @@
+#include "sim/link_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string_view>
+
+#include "base/rounded_time.hpp"
+#include "device/link_edit.hpp"
+
+namespace pogosim {
+
+namespace {
+
+std::string json_text(std::string_view text) {
+    std::string json = "\"";
+    for (char const c : text) {
+        if (c == '"' || c == '\\') {
+            json += '\\';
+            json += c;
+        } else if (static_cast<unsigned char>(c) < ' ') {
+            json += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        } else {
+            json += c;
+        }
+    }
+    return json + '"';
+}
+
+std::string number(double value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
+std::string number(float value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
+std::string pair(Vec2 point) {
+    return fmt::format("[{},{}]", number(point.x), number(point.y));
+}
+
+char const* name_of(LinkKind kind) {
+    switch (kind) {
+        case LinkKind::spring:
+            return "spring";
+        case LinkKind::rod:
+            return "rod";
+        case LinkKind::hinge:
+            break;
+    }
+    return "hinge";
+}
+
+/// `"name":[...]` of all values, each as text.
+template <class Values, class Text>
+std::string list(std::string_view name, Values const& values, Text const& text) {
+    std::string all = fmt::format("\"{}\":[", name);
+    char const* separator = "";
+    for (auto const& value : values) {
+        all += separator;
+        all += text(value);
+        separator = ",";
+    }
+    return all + ']';
+}
+
+/// The links from `first` on, without the last bracket.
+std::string links_from(World const& world, std::size_t first) {
+    std::vector<Link> const links(world.links.begin() + static_cast<std::ptrdiff_t>(first), world.links.end());
+    std::vector<std::uint32_t> const object_of = objects_of_bodies(world);
+    // Only the objects that are linked, in the order of the run.
+    std::vector<std::uint32_t> objects;
+    for (Link const& link : links) {
+        objects.push_back(object_of[link.a]);
+        if (link.b != kNone) {
+            objects.push_back(object_of[link.b]);
+        }
+    }
+    std::ranges::sort(objects);
+    auto const repeated = std::ranges::unique(objects);
+    objects.erase(repeated.begin(), repeated.end());
+    auto const place = [&](std::uint32_t body) {
+        return body == kNone ? -1 : std::ranges::lower_bound(objects, object_of[body]) - objects.begin();
+    };
+
+    std::string text = "{";
+    text += list("objects", objects, [&](std::uint32_t i) {
+        Object const& object = world.objects[i];
+        return fmt::format("[{},{}]", json_text(world.categories[object.category].name), object.id);
+    });
+    text += ',' + list("categories", world.link_categories, [](LinkCategory const& category) {
+                return fmt::format("{{\"name\":{},\"drawn\":{}}}", json_text(category.name), category.are_drawn);
+            });
+    auto const add = [&](char const* name, auto const& value) { text += ',' + list(name, links, value); };
+    add("category", [](Link const& link) { return fmt::format("{}", link.link_category); });
+    add("kind", [](Link const& link) { return fmt::format("\"{}\"", name_of(link.kind)); });
+    add("a", [&](Link const& link) { return fmt::format("{}", place(link.a)); });
+    add("b", [&](Link const& link) { return fmt::format("{}", place(link.b)); });
+    add("end_a_mm", [](Link const& link) { return pair(link.end_a_mm); });
+    add("end_b_mm", [](Link const& link) { return pair(link.end_b_mm); });
+    add("rest_mm", [](Link const& link) { return number(link.length_mm); });
+    add("stiffness_n_m", [](Link const& link) { return number(link.stiffness_n_m); });
+    add("damping_n_s_m", [](Link const& link) { return number(link.damping_n_s_m); });
+    add("breaking_n", [](Link const& link) { return number(link.breaking_n); });
+    return text;
+}
+
+std::string second(double time_s) {
+    return number(rounded_to_ns(time_s));
+}
+
+}  // namespace
+
+std::string LinkRecord::initial(World const& world) {
+    return world.links.empty() ? "" : links_from(world, 0) + '}';
+}
+
+void LinkRecord::follow(World const& world) {
+    if (!has_begun_) {
+        has_begun_ = true;
+        initial_count_ = world.links.size();
+    }
+    made_s_.resize(std::max(world.links.size(), initial_count_) - initial_count_, world.time_s());
+    is_cut_.resize(world.links.size());
+    for (std::size_t i = 0; i < world.links.size(); ++i) {
+        if (world.links[i].is_cut && !is_cut_[i]) {
+            is_cut_[i] = true;
+            cut_.push_back({.link = i, .time_s = world.time_s()});
+        }
+    }
+}
+
+std::string LinkRecord::changes(World const& world) const {
+    if (made_s_.empty() && cut_.empty()) {
+        return "";
+    }
+    std::string text = "{\"made\":";
+    text += links_from(world, initial_count_) + ',' + list("time_s", made_s_, second) + '}';
+    text += ",\"cut\":{" + list("link", cut_, [](Cut const& cut) { return fmt::format("{}", cut.link); });
+    return text + ',' + list("time_s", cut_, [](Cut const& cut) { return second(cut.time_s); }) + "}}";
+}
+
+}  // namespace pogosim

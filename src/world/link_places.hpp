@@ -1,0 +1,26 @@
+// Where the ends of links are.
+#pragma once
+
+#include "world/world.hpp"
+
+namespace pogosim {
+
+struct LinkPlaces {
+    Vec2 a_mm;  // not wrapped
+    Vec2 b_mm;  // its image nearest to `a_mm`
+
+    Vec2 span_mm() const { return b_mm - a_mm; }
+};
+
+/// The place of a point in a body's own frame.
+inline Vec2 place_on_body(Bodies const& bodies, std::uint32_t body, Vec2 point_mm) {
+    return bodies.position_mm[body] + rotate(point_mm, bodies.heading_dir[body]);
+}
+
+inline LinkPlaces places_of_ends(World const& world, Link const& link) {
+    Vec2 const a_mm = place_on_body(world.bodies, link.a, link.end_a_mm);
+    Vec2 const b_mm = link.b == kNone ? link.end_b_mm : place_on_body(world.bodies, link.b, link.end_b_mm);
+    return {a_mm, a_mm + minimum_image(world, a_mm, b_mm)};
+}
+
+}  // namespace pogosim
