@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "config/flash_keys.hpp"
+#include "config/link_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
@@ -88,6 +89,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."},
+        K{"links", Elsewhere{kLinksMap}, any(), "",
+          "Springs, rods and hinges between objects, by names of your own; see their own table."},
         K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."},
         // For the batch and optimisation tools; the simulator reads past them.
         K{"pogobatch", Elsewhere{"a map of keys"}, any(), "", "For batch tools: their settings."},
