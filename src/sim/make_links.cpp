@@ -1,15 +1,14 @@
 #include "sim/make_links.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -206,13 +205,14 @@ private:
         if (config_.which == LinkedObjects::numbers) {
             return config_.numbers;
         }
-        std::vector<std::uint32_t> numbers;
-        Neighbours const neighbours(world_, first_);
-        std::size_t const inside = scenario_.formation.lattice_kind == LatticeKind::square ? 4 : 6;
-        for (std::uint32_t i = 0; i < first_.size(); ++i) {
-            if (config_.which == LinkedObjects::all || lattice_neighbours(i, first_, neighbours).size() < inside) {
-                numbers.push_back(i);
-            }
+        std::vector<std::uint32_t> numbers(first_.size());
+        std::iota(numbers.begin(), numbers.end(), 0U);
+        if (config_.which == LinkedObjects::rim) {
+            Neighbours const neighbours(world_, first_);
+            std::size_t const inside = scenario_.formation.lattice_kind == LatticeKind::square ? 4 : 6;
+            std::erase_if(numbers, [&](std::uint32_t number) {
+                return lattice_neighbours(number, first_, neighbours).size() == inside;
+            });
         }
         return numbers;
     }
