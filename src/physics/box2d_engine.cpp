@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "physics/assemblies.hpp"
 #include "physics/assert_motion.hpp"
 #include "physics/box2d_shapes.hpp"
 #include "physics/box2d_units.hpp"
@@ -156,6 +157,7 @@ public:
         for (Joint const& joint : world.joints) {
             add_joint(joint, kMostSwingsPerStep / static_cast<float>(world.time_step_s));
         }
+        follow_links(world);
         for (Membrane const& membrane : world.membranes) {
             areas_.emplace_back(line_of(membrane));
         }
@@ -174,12 +176,15 @@ public:
         start_.note(world.bodies);
         int const substeps =
             substeps_for(fastest_of(world, others_set_velocities_), most_motion_mm_, world.time_step_s);
-        Iterations const iterations = world.joints.empty() ? kContactIterations : kJointIterations;
+        bool const is_held = !world.joints.empty() || !world.links.empty();
+        Iterations const iterations = is_held ? kJointIterations : kContactIterations;
         auto const dt_s = static_cast<float>(world.time_step_s / substeps);
         for (int i = 0; i < substeps; ++i) {
             push_areas(world, dt_s);
             step(dt_s, iterations);
         }
+        write_tensions(world, 1.0F / dt_s);
+        break_links(world);
         if (position_correction_) {
             hold_in_walls();
         }
@@ -215,6 +220,9 @@ public:
 
 private:
     void take_over(World& world) {
+        if (link_changes_ != world.link_changes) {
+            follow_links(world);
+        }
         Bodies& bodies = world.bodies;
         for (WrittenBody const& written : bodies.written) {
             take_over_velocity(world, written.body);
@@ -432,6 +440,80 @@ private:
         engine_->CreateJoint(&spring);
     }
 
+    /// Makes what has been linked, and lets go of what has been cut.
+    void follow_links(World const& world) {
+        link_changes_ = world.link_changes;
+        links_.resize(world.links.size());
+        for (std::size_t i = 0; i < links_.size(); ++i) {
+            Link const& link = world.links[i];
+            if (link.is_cut && links_[i] != nullptr) {
+                engine_->DestroyJoint(links_[i]);
+                links_[i] = nullptr;
+            } else if (!link.is_cut && links_[i] == nullptr) {
+                links_[i] = link.kind == LinkKind::hinge ? add_hinge(link) : add_distance(link);
+            }
+        }
+        for (b2Body* const body : bodies_) {
+            body->SetAwake(true);
+        }
+        any_awake_ = true;
+    }
+
+    b2Body* end_of(std::uint32_t body) {
+        if (body != kNone) {
+            return bodies_[body];
+        }
+        if (ground_ == nullptr) {
+            b2BodyDef const still;
+            ground_ = engine_->CreateBody(&still);
+        }
+        return ground_;
+    }
+
+    b2Joint* add_hinge(Link const& link) {
+        b2RevoluteJointDef hinge;
+        hinge.bodyA = end_of(link.a);
+        hinge.bodyB = end_of(link.b);
+        hinge.localAnchorA = to_box2d(link.end_a_mm);
+        hinge.localAnchorB = to_box2d(link.end_b_mm);
+        hinge.referenceAngle = link.rest_rad;
+        hinge.enableLimit = std::isfinite(link.least_rad) || std::isfinite(link.most_rad);
+        hinge.lowerAngle = std::max(link.least_rad, -b2_maxFloat);
+        hinge.upperAngle = std::min(link.most_rad, b2_maxFloat);
+        return engine_->CreateJoint(&hinge);
+    }
+
+    b2Joint* add_distance(Link const& link) {
+        b2DistanceJointDef line;
+        line.bodyA = end_of(link.a);
+        line.bodyB = end_of(link.b);
+        line.localAnchorA = to_box2d(link.end_a_mm);
+        line.localAnchorB = to_box2d(link.end_b_mm);
+        line.collideConnected = true;
+        line.length = link.length_mm / kMmPerUnit;
+        bool const is_rod = link.kind == LinkKind::rod;
+        line.minLength = is_rod ? line.length : 0.0F;
+        line.maxLength = is_rod ? line.length : b2_maxFloat;
+        line.stiffness = is_rod ? 0.0F : link.stiffness_n_m;
+        line.damping = is_rod ? 0.0F : link.damping_n_s_m;
+        return engine_->CreateJoint(&line);
+    }
+
+    /// In the last sub-step.
+    void write_tensions(World& world, float per_dt) const {
+        constexpr float newton = 1e-3F * kMmPerUnit;  // per unit of force
+        for (std::size_t i = 0; i < links_.size(); ++i) {
+            Link& link = world.links[i];
+            if (links_[i] == nullptr) {
+                continue;
+            }
+            b2Vec2 const force = links_[i]->GetReactionForce(per_dt);
+            b2Vec2 const way = links_[i]->GetAnchorB() - links_[i]->GetAnchorA();
+            float const sign = link.kind == LinkKind::hinge || b2Dot(force, way) < 0.0F ? 1.0F : -1.0F;
+            link.tension_n = sign * newton * force.Length();
+        }
+    }
+
     void read_back(Bodies& bodies, std::size_t i) {
         b2Body& body = *bodies_[i];
         if (bodies.spec[i].fixed) {
@@ -466,6 +548,9 @@ private:
     bool others_set_velocities_ = false;  // up to now, something other than the motors has set some
     std::vector<MembraneArea> areas_;
     std::vector<b2Body*> bodies_;  // owned by engine_; index as in World::bodies
+    std::vector<b2Joint*> links_;  // the same; null: cut
+    b2Body* ground_ = nullptr;     // to which links to the arena are attached
+    std::uint32_t link_changes_ = 0;
 };
 
 }  // namespace

@@ -39,6 +39,7 @@ ContinuousCollision::ContinuousCollision(World const& world) : is_of_membrane_(w
 }
 
 std::vector<std::uint32_t> const& ContinuousCollision::stop_at_impacts(World& world, Hulls const& hulls,
+                                                                       Assemblies const& assemblies,
                                                                        std::span<std::uint32_t const> fast) {
     Bodies& bodies = world.bodies;
     find_ways(world, fast);
@@ -53,7 +54,7 @@ std::vector<std::uint32_t> const& ContinuousCollision::stop_at_impacts(World& wo
     for (std::size_t next = 0; next < waiting_.size(); ++next) {
         std::uint32_t const i = waiting_[next];
         is_waiting_[i] = 0;
-        float const fraction = free_fraction(world, hulls, i);
+        float const fraction = free_fraction(world, hulls, assemblies, i);
         if (fraction < fractions_[i]) {
             fractions_[i] = ++cuts_[i] < kMostCuts ? fraction : 0.0F;
             bodies.position_mm[i] = starts_mm_[i] + fractions_[i] * motions_mm_[i];
@@ -97,17 +98,26 @@ float ContinuousCollision::reach_mm(Bodies const& bodies, std::uint32_t i) const
     return length(motions_mm_[i]) + farthest_mm_ + bodies.radius_mm[i] + largest_mm_ + kRoundingMm;
 }
 
+bool ContinuousCollision::can_stop(Assemblies const& assemblies, std::uint32_t i, std::uint32_t k) const {
+    std::span<std::uint32_t const> const first = assemblies.first_bodies();
+    return first[i] != first[k] && (is_of_membrane_[i] == 0 || is_of_membrane_[k] == 0);
+}
+
 /// The fraction of its motion that a body can make before it meets another one.
-float ContinuousCollision::free_fraction(World const& world, Hulls const& hulls, std::uint32_t i) const {
+float ContinuousCollision::free_fraction(World const& world, Hulls const& hulls, Assemblies const& assemblies,
+                                         std::uint32_t i) const {
     Bodies const& bodies = world.bodies;
     float fraction = fractions_[i];
     grid_.for_each_near(starts_mm_[i], reach_mm(bodies, i), [&](std::uint32_t k, Vec2 /*start_mm*/) {
+        if (!can_stop(assemblies, i, k)) {
+            return;
+        }
         if (hulls.is_one(i) || (hulls.is_one(k) && !bodies.spec[k].fixed)) {
-            fraction = k != i ? std::min(fraction, fraction_before_hull(world, hulls, i, k)) : fraction;
+            fraction = std::min(fraction, fraction_before_hull(world, hulls, i, k));
         } else if (hulls.is_one(k)) {
             fraction = std::min(fraction,
                                 hulls.fraction_to_touch(world, k, starts_mm_[i], motions_mm_[i], bodies.radius_mm[i]));
-        } else if (k != i && (is_of_membrane_[i] == 0 || is_of_membrane_[k] == 0)) {
+        } else {
             fraction = std::min(fraction, fraction_before(world, i, k));
         }
     });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/grid.hpp"
+#include "physics/assemblies.hpp"
 #include "physics/hulls.hpp"
 #include "world/world.hpp"
 
@@ -18,14 +19,16 @@ public:
     /// Stops bodies where they first touch others on their straight paths from the start to the end of the step; the
     /// impact itself happens in the next step. Tests the paths of the `fast` bodies, and of all bodies that meet one
     /// that has been stopped. Returns the bodies whose motion was shortened; some may be listed twice. Two bodies that
-    /// overlap at the start do not approach further. Bodies of membranes do not stop each other.
-    std::vector<std::uint32_t> const& stop_at_impacts(World& world, Hulls const& hulls,
+    /// overlap at the start do not approach further. Bodies of membranes do not stop each other, nor do those that
+    /// links hold together.
+    std::vector<std::uint32_t> const& stop_at_impacts(World& world, Hulls const& hulls, Assemblies const& assemblies,
                                                       std::span<std::uint32_t const> fast);
 
 private:
     void find_ways(World const& world, std::span<std::uint32_t const> fast);
     float reach_mm(Bodies const& bodies, std::uint32_t i) const;
-    float free_fraction(World const& world, Hulls const& hulls, std::uint32_t i) const;
+    bool can_stop(Assemblies const& assemblies, std::uint32_t i, std::uint32_t k) const;
+    float free_fraction(World const& world, Hulls const& hulls, Assemblies const& assemblies, std::uint32_t i) const;
     float fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const;
     float fraction_before_hull(World const& world, Hulls const& hulls, std::uint32_t i, std::uint32_t k) const;
     Hull hull_at(World const& world, Hulls const& hulls, std::uint32_t i, float fraction, Vec2 origin_mm) const;

@@ -69,13 +69,14 @@ void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32
     }
 }
 
-void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls) {
+void DiskContacts::build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
+                         WallNeighbourList const& walls) {
     walls_ = walls.sides();
     keep_impulses();
     near_.clear();
     with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
-        if (!membranes_.may_collide(a, b) || is_movable_hull(a) || is_movable_hull(b)) {
+        if (!may_collide(assemblies, a, b) || is_movable_hull(a) || is_movable_hull(b)) {
             continue;
         }
         if (is_fixed(a)) {
@@ -96,15 +97,15 @@ void DiskContacts::build(World const& world, NeighbourList const& pairs, WallNei
     }
     first_hull_ = first_hull_fixed_ = first_hull_wall_ = static_cast<std::uint32_t>(near_.size());
     if (!hulls_.empty()) {
-        add_hulls(pairs, walls);
+        add_hulls(assemblies, pairs, walls);
     }
     give_impulses();
 }
 
-void DiskContacts::add_hulls(NeighbourList const& pairs, WallNeighbourList const& walls) {
+void DiskContacts::add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls) {
     with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
-        if (!membranes_.may_collide(a, b) || !(is_movable_hull(a) || is_movable_hull(b))) {
+        if (!may_collide(assemblies, a, b) || !(is_movable_hull(a) || is_movable_hull(b))) {
             continue;
         }
         NearContact const near{

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "physics/assemblies.hpp"
 #include "physics/hulls.hpp"
 #include "physics/membrane_filter.hpp"
 #include "physics/neighbour_list.hpp"
@@ -66,7 +67,8 @@ public:
     DiskContacts(World const& world, WallSpec const& walls);
 
     /// Builds the contacts from the neighbour lists.
-    void build(World const& world, NeighbourList const& pairs, WallNeighbourList const& walls);
+    void build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
+               WallNeighbourList const& walls);
 
     /// First pairs of movable disks, then disks with fixed bodies, then disks with walls. Then the contacts in which a
     /// movable body is a hull, in the same order.
@@ -94,7 +96,7 @@ public:
     /// The same for contacts of hulls, from first_hull() on.
     std::vector<HullImpulse>& hull_impulse() { return hull_impulse_; }
 
-    /// The same for each joint of the world, which is a spring.
+    /// The same for each joint of the world that is a spring.
     std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
     std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
 
@@ -121,7 +123,10 @@ private:
         HullImpulse of_hull;
     };
 
-    void add_hulls(NeighbourList const& pairs, WallNeighbourList const& walls);
+    bool may_collide(Assemblies const& assemblies, std::uint32_t a, std::uint32_t b) const {
+        return membranes_.may_collide(a, b) && assemblies.may_collide(a, b);
+    }
+    void add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls);
     void add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm);
     std::uint64_t things_of(std::uint32_t contact) const;
     void keep_impulses();

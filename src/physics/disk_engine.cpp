@@ -1,8 +1,7 @@
 // Our own engine for rigid disks and convex polygons: a structure of arrays, a neighbour list that stays valid until a
-// body has moved far, and a solver that sub-steps only bodies in contact. All other bodies move on a straight line, at
-// the cost of reading and writing them. Soft membranes are disks joined by springs.
-#include <fmt/format.h>
-
+// body has moved far, and a solver that sub-steps only bodies in contact or held by links. All other bodies move on a
+// straight line, at the cost of reading and writing them. Soft membranes are disks joined by springs, or rectangles
+// joined by hinges.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "base/worker_pool.hpp"
+#include "physics/assemblies.hpp"
 #include "physics/assert_motion.hpp"
 #include "physics/coinciding_centres.hpp"
 #include "physics/continuous_collision.hpp"
@@ -70,7 +70,7 @@ public:
           neighbour_list_(world),
           contacts_(world, walls),
           damping_(world.bodies),
-          islands_(world),
+          assemblies_(world),
           solvers_(workers.size(), IslandSolver(world)),
           continuous_collision_(world) {
         Bodies const& bodies = world.bodies;
@@ -99,7 +99,7 @@ public:
         auto const dt_s = static_cast<float>(world.time_step_s);
         damping_.begin_step(bodies, dt_s);
         float const fastest_mm_s = std::max(fastest(bodies), fastest_turn_mm_s(bodies));
-        if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_) {
+        if (fastest_mm_s == 0.0F && !turns(bodies) && !has_overlaps_ && !moved_ && !pulls(world)) {
             start_.note_still(bodies);  // as in a swarm that only communicates
             return;
         }
@@ -108,10 +108,10 @@ public:
         if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
             neighbour_list_.build(world, reach_mm, workers_);
             wall_neighbour_list_.build(world, position_correction_.walls(), neighbour_list_.skin_mm());
-            contacts_.build(world, neighbour_list_, wall_neighbour_list_);
+            contacts_.build(world, assemblies_, neighbour_list_, wall_neighbour_list_);
         }
         some_are_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
-        islands_.find(world, contacts_, {.reach_mm = reach_mm, .wakes_membranes = moved_}, workers_);
+        islands_.find(world, assemblies_, contacts_, {.reach_mm = reach_mm, .wakes_assemblies = moved_}, workers_);
         moved_ = false;
         solve_islands(world, is_driven);
         move_others(world, dt_s);
@@ -122,6 +122,7 @@ public:
             hold_by_membranes(world);
         }
         damping_.end_step(bodies);
+        break_links(world);
         assert_motion(bodies);
     }
 
@@ -145,12 +146,19 @@ private:
         std::atomic<bool> has_overlaps = false;
         workers_.run_ranges(count, kLeastIslands, [&](WorkRange range) {
             for (Island const& island : islands.subspan(range.first, range.last - range.first)) {
-                if (island.is_active && solvers_[range.worker].solve(world, contacts_, islands_, island, is_driven)) {
+                if (island.is_active &&
+                    solvers_[range.worker].solve(world, assemblies_, contacts_, islands_, island, is_driven)) {
                     has_overlaps = true;
                 }
             }
         });
         has_overlaps_ = has_overlaps;
+    }
+
+    /// Whether a link will move something that rests.
+    static bool pulls(World const& world) {
+        return std::ranges::any_of(world.links,
+                                   [](Link const& link) { return !link.is_cut && link.tension_n != 0.0F; });
     }
 
     void move_others(World& world, float dt_s) {
@@ -199,7 +207,8 @@ private:
     }
 
     void hold_fast(World& world) {
-        for (std::uint32_t const i : continuous_collision_.stop_at_impacts(world, contacts_.hulls(), fast_)) {
+        for (std::uint32_t const i :
+             continuous_collision_.stop_at_impacts(world, contacts_.hulls(), assemblies_, fast_)) {
             Vec2& place_mm = world.bodies.position_mm[i];
             place_mm = world.periodic ? wrapped_alone(world, place_mm) : position_correction_.hold_fast(i, place_mm);
         }
@@ -242,6 +251,7 @@ private:
     /// Velocities that were written need nothing.
     void take_over(World& world) {
         Bodies& bodies = world.bodies;
+        moved_ = assemblies_.follow(world) || moved_;
         std::vector<std::uint32_t> const moved = moved_bodies(bodies);
         bodies.written.clear();
         if (moved.empty()) {
@@ -293,6 +303,7 @@ private:
     NeighbourList neighbour_list_;
     DiskContacts contacts_;
     Damping damping_;
+    Assemblies assemblies_;
     Islands islands_;
     std::vector<IslandSolver> solvers_;  // one for each worker
     ContinuousCollision continuous_collision_;
@@ -312,15 +323,6 @@ private:
 };
 
 }  // namespace
-
-std::string why_unfit_for_disk_engine(World const& world) {
-    for (Object const& object : world.objects) {
-        if (object.body_count > 1 && world.bodies.shape[object.body].kind != ShapeKind::disk) {
-            return fmt::format("does not move membranes of segments ('{}')", world.categories[object.category].name);
-        }
-    }
-    return "";
-}
 
 std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls, WorkerPool& workers) {
     return std::make_unique<DiskEngine>(world, walls, workers);

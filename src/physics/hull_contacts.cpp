@@ -10,30 +10,6 @@ namespace {
 // Touches are sought within this distance, and what the bodies can close in a sub-step.
 constexpr float kTouchReachMm = 1.0F;
 
-/// Velocity of a point of a body that turns, relative to its centre.
-Vec2 velocity_of(float spin_rad_s, Vec2 arm_mm) {
-    return {-spin_rad_s * arm_mm.y, spin_rad_s * arm_mm.x};
-}
-
-/// Velocity of the end of an arm of `a` relative to that of an arm of `b`.
-Vec2 velocity_between(Mover const& a, Mover const& b, Vec2 arm_a_mm, Vec2 arm_b_mm) {
-    return a.velocity_mm_s + velocity_of(a.angular_velocity_rad_s, arm_a_mm) - b.velocity_mm_s -
-           velocity_of(b.angular_velocity_rad_s, arm_b_mm);
-}
-
-/// The inverse of the mass that a push along `way` at the ends of two arms has to move.
-float inverse_mass(Mover const& a, Mover const& b, Vec2 arm_a_mm, Vec2 arm_b_mm, Vec2 way) {
-    float const lever_a_mm = cross(arm_a_mm, way);
-    float const lever_b_mm = cross(arm_b_mm, way);
-    return a.inverse_mass + b.inverse_mass + a.inverse_inertia * lever_a_mm * lever_a_mm +
-           b.inverse_inertia * lever_b_mm * lever_b_mm;
-}
-
-void push(Mover& mover, Vec2 arm_mm, Vec2 impulse) {
-    mover.velocity_mm_s = mover.velocity_mm_s + mover.inverse_mass * impulse;
-    mover.angular_velocity_rad_s += mover.inverse_inertia * cross(arm_mm, impulse);
-}
-
 Vec2 tangent_of(Vec2 normal) {
     return {-normal.y, normal.x};
 }

@@ -17,9 +17,10 @@ namespace {
 constexpr int kSubsteps = 4;
 // Iterations over the contacts of an island end when none of them changes a gap at the end of the sub-step by more.
 constexpr float kConvergedMm = 0.005F;
+constexpr float kLinksConvergedMm = 1e-4F;  // along a chain, what is left adds up
 constexpr int kMostPasses = 8;
 constexpr int kMostSoftPasses = 6;   // an impulse has to travel round a membrane
-constexpr int kMostHullPasses = 10;  // the two touches of a contact push against each other
+constexpr int kMostHullPasses = 10;  // the two touches of a contact push against each other, as links do
 // Soft constraint: natural frequency relative to the rate of sub-steps, and damping ratio; see Catto, "Solver2D".
 constexpr float kStiffness = 0.25F;
 constexpr float kDampingRatio = 3.0F;
@@ -28,6 +29,8 @@ constexpr float kDampingRatio = 3.0F;
 constexpr float kMostThrown = 4.0F;
 // A hull turns by at most this in a sub-step, rad, as long as there are not too many.
 constexpr float kMostTurnRad = 0.1F;
+// What springs swing by at most in a sub-step, rad, as long as there are not too many.
+constexpr float kMostSwingRad = 0.5F;
 
 // Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
@@ -68,8 +71,8 @@ std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& con
     return mover;
 }
 
-void IslandSolver::gather(World const& world, DiskContacts const& contacts, Islands const& islands,
-                          Island const& island) {
+void IslandSolver::gather(World const& world, Assemblies& assemblies, DiskContacts const& contacts,
+                          Islands const& islands, Island const& island) {
     block_shift_ = 0;
     while (island.contact_count > kMostBlocks << block_shift_) {
         ++block_shift_;
@@ -79,13 +82,16 @@ void IslandSolver::gather(World const& world, DiskContacts const& contacts, Isla
     pair_count_ = 0;
     membranes_.clear();
     hulls_.clear();
-    for (std::uint32_t i = island.first_membrane; i != kNone; i = islands.next_membranes()[i]) {
-        Membrane const& membrane = world.membranes[i];
-        auto const first = static_cast<std::uint32_t>(movers_.size());
-        for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
-            mover_of(world, contacts, membrane.body + k);
+    links_.clear();
+    for (std::uint32_t i = island.first_assembly; i != kNone; i = islands.next_assemblies()[i]) {
+        Assembly const& assembly = assemblies.all()[i];
+        for (std::uint32_t const body : assembly.bodies) {
+            mover_of(world, contacts, body);
         }
-        membranes_.add(world, i, movers_, first, contacts.spring_impulse());
+        for (std::uint32_t const membrane : assembly.membranes) {
+            membranes_.add(world, membrane, movers_, mover_[world.membranes[membrane].body], contacts.spring_impulse());
+        }
+        links_.add(world, assemblies, assembly, movers_, mover_);
     }
     for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
         std::uint32_t const index = islands.links()[link].contact;
@@ -348,9 +354,51 @@ void IslandSolver::keep_impulses(std::vector<float>& driven_impulse) const {
     }
 }
 
-/// With the turning of hulls, the speed of a corner.
+/// Times two.
+double IslandSolver::kinetic_energy(Vec2 drift_mm_s) const {
+    double energy = 0.0;
+    for (Mover const& mover : movers_) {
+        if (mover.inverse_mass > 0.0F) {
+            float const spin_rad_s = mover.angular_velocity_rad_s;
+            energy += static_cast<double>(squared_length(mover.velocity_mm_s - drift_mm_s) / mover.inverse_mass) +
+                      static_cast<double>(spin_rad_s * spin_rad_s / mover.inverse_inertia);
+        }
+    }
+    return energy;
+}
+
+/// The velocity of the centre of mass.
+Vec2 IslandSolver::drift_mm_s() const {
+    Vec2 sum;
+    float mass = 0.0F;
+    for (Mover const& mover : movers_) {
+        if (mover.inverse_mass > 0.0F) {
+            sum = sum + (1.0F / mover.inverse_mass) * mover.velocity_mm_s;
+            mass += 1.0F / mover.inverse_mass;
+        }
+    }
+    return (1.0F / mass) * sum;
+}
+
+/// Takes back what links and contacts have added that push against each other in vain, such as a chain that is tied
+/// into a knot.
+void IslandSolver::limit_energy(double most) {
+    Vec2 const drift = drift_mm_s();
+    double const inner = kinetic_energy(drift);
+    double const outer = kinetic_energy({}) - inner;
+    if (outer + inner <= most || inner == 0.0) {
+        return;
+    }
+    auto const share = static_cast<float>(std::sqrt(std::max(most - outer, 0.0) / inner));
+    for (Mover& mover : std::span(movers_).subspan(1)) {
+        mover.velocity_mm_s = drift + share * (mover.velocity_mm_s - drift);
+        mover.angular_velocity_rad_s *= share;
+    }
+}
+
+/// With turning that matters, the speed of a corner.
 float IslandSolver::fastest_mm_s() const {
-    float const turn = hulls_.empty() ? 0.0F : 1.0F;
+    float const turn = turns_matter() ? 1.0F : 0.0F;
     float fastest_mm_s = 0.0F;
     for (Mover const& mover : movers_) {
         fastest_mm_s = std::max(fastest_mm_s, length(mover.velocity_mm_s) +
@@ -359,9 +407,8 @@ float IslandSolver::fastest_mm_s() const {
     return fastest_mm_s;
 }
 
-/// Disks may turn as fast as they like.
 float IslandSolver::fastest_turn_rad_s() const {
-    if (hulls_.empty()) {
+    if (!turns_matter()) {
         return 0.0F;
     }
     float fastest_rad_s = 0.0F;
@@ -372,9 +419,13 @@ float IslandSolver::fastest_turn_rad_s() const {
 }
 
 /// Returns whether any body was faster.
-bool IslandSolver::limit_speeds(float most_mm_s) {
+bool IslandSolver::limit_speeds(float most_mm_s, float most_rad_s) {
     bool is_limited = false;
     for (Mover& mover : movers_) {
+        if (std::abs(mover.angular_velocity_rad_s) > most_rad_s) {
+            mover.angular_velocity_rad_s = std::clamp(mover.angular_velocity_rad_s, -most_rad_s, most_rad_s);
+            is_limited = true;
+        }
         float const speed_mm_s = length(mover.velocity_mm_s);
         if (speed_mm_s > most_mm_s) {
             mover.velocity_mm_s = (most_mm_s / speed_mm_s) * mover.velocity_mm_s;
@@ -384,41 +435,55 @@ bool IslandSolver::limit_speeds(float most_mm_s) {
     return is_limited;
 }
 
-/// Springs before contacts: contacts, which must hold, are solved last.
+/// Springs and links before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
-    int const passes = hulls_.empty() ? kMostSoftPasses : kMostHullPasses;
+    int const passes = hulls_.empty() && links_.empty() ? kMostSoftPasses : kMostHullPasses;
+    float const converged_mm = links_.empty() ? kConvergedMm : kLinksConvergedMm;
     for (int pass = 0; pass < passes; ++pass) {
         bool const backwards = pass % 2 == 0;
-        float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
+        float change_mm_s =
+            std::max(membranes_.solve(movers_, backwards, !pushes), links_.solve(movers_, backwards, pushes));
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             Contact& contact = contacts_[backwards ? contacts_.size() - 1 - i : i];
             float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
             change_mm_s = std::max(change_mm_s, solve_contact(contact, demanded_mm_s));
         }
         change_mm_s = std::max(change_mm_s, hulls_.solve(movers_, backwards, pushes));
-        if (h_s * change_mm_s <= kConvergedMm) {
+        if (h_s * change_mm_s <= converged_mm) {
             return;
         }
     }
 }
 
+/// No body moves further in a sub-step than membranes can hold back, see membrane_steps.hpp.
+int IslandSolver::substeps_of(float dt_s) const {
+    float const needed =
+        std::ceil(std::max({fastest_mm_s() * dt_s / most_motion_mm_, fastest_turn_rad_s() * dt_s / kMostTurnRad,
+                            links_.fastest_swing_rad_s() * dt_s / kMostSwingRad}));
+    return static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
+}
+
 /// Returns whether some bodies overlap in the end.
 bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool is_driven) {
     auto const dt_s = static_cast<float>(world.time_step_s);
-    float const fastest_mm_s = this->fastest_mm_s();
-    // No body moves further in a sub-step than membranes can hold back, see membrane_steps.hpp.
-    float const needed =
-        std::ceil(std::max(fastest_mm_s * dt_s / most_motion_mm_, fastest_turn_rad_s() * dt_s / kMostTurnRad));
-    auto const substeps =
-        static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
-    float const most_mm_s = std::min(kMostThrown * std::max(fastest_mm_s, kFastestPushMmS),
-                                     static_cast<float>(kMostSubsteps) * most_motion_mm_ / dt_s);
+    int const substeps = substeps_of(dt_s);
+    // Springs of links may throw as far as they can.
+    float const most_mm_s = links_.fastest_swing_rad_s() > 0.0F && membranes_.empty()
+                                ? kUnlimited
+                                : std::min(kMostThrown * std::max(fastest_mm_s(), kFastestPushMmS),
+                                           static_cast<float>(kMostSubsteps) * most_motion_mm_ / dt_s);
+    float const most_rad_s = turns_matter() ? static_cast<float>(kMostSubsteps) * kMostTurnRad / dt_s : kUnlimited;
+    // Then nothing adds energy, but walls that do more than give it back.
+    bool const only_rigid = links_.has_rigid() && links_.fastest_swing_rad_s() == 0.0F && membranes_.empty() &&
+                            std::ranges::all_of(contacts_, [](Contact const& c) { return c.law.restitution <= 1.0F; });
     float const h_s = dt_s / static_cast<float>(substeps);
     Times times{.h_s = h_s, .rest_s = 0.0F, .per_h = 1.0F / h_s, .push_rate = push_rate(h_s)};
     bool overlaps = false;
     for (int substep = 0; substep < substeps; ++substep) {
         times.rest_s = static_cast<float>(substeps - substep) * h_s;
+        double const most_energy = only_rigid ? kinetic_energy({}) : 0.0;
         bool const is_too_long = membranes_.begin_substep(movers_, h_s, times.push_rate);
+        links_.begin_substep(movers_, times);
         overlaps = measure(world, contacts, times).overlaps;
         overlaps = hulls_.measure(contacts, movers_, times) || overlaps;
         if (is_driven && substep == 0) {
@@ -428,23 +493,30 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool i
         if (is_driven && substep == 0) {
             hulls_.keep_impulses(contacts);
         }
-        bool const is_limited = limit_speeds(most_mm_s);
+        bool const is_limited = limit_speeds(most_mm_s, most_rad_s);
         move(h_s);
         if (is_limited) {
             membranes_.forget_impulses();  // bad initial guesses would grow with each sub-step
-        } else if (overlaps || is_too_long) {
+            links_.forget_impulses();
+        } else if (overlaps || is_too_long || links_.has_rigid()) {
+            links_.begin_relaxing(movers_);
             solve_velocities_softly(h_s, /*pushes=*/false);
         }
+        if (only_rigid) {
+            limit_energy(most_energy);
+        }
+        links_.end_substep();
     }
     return overlaps;
 }
 
-bool IslandSolver::solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island,
-                         bool is_driven) {
-    gather(world, contacts, islands, island);
-    if (!membranes_.empty() || !hulls_.empty()) {
+bool IslandSolver::solve(World& world, Assemblies& assemblies, DiskContacts& contacts, Islands const& islands,
+                         Island const& island, bool is_driven) {
+    gather(world, assemblies, contacts, islands, island);
+    if (!membranes_.empty() || !hulls_.empty() || !links_.empty()) {
         bool const overlaps = solve_soft(world, contacts, is_driven);
         membranes_.keep_impulses(contacts.spring_impulse());
+        links_.write_tensions(world);
         scatter(world);
         return overlaps;
     }

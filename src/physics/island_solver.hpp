@@ -6,8 +6,8 @@
 // moved ("relaxation"), so that they add no energy: E. Catto, "Solver2D" (2024).
 //
 // The solver works on a contiguous copy of the bodies and contacts of the island, and solves a contact again only if
-// the velocity of one of its bodies has changed since. In an island with hulls or soft membranes, each iteration solves
-// all contacts and springs, and fast bodies have more sub-steps.
+// the velocity of one of its bodies has changed since. In an island with hulls, soft membranes or links, each iteration
+// solves all contacts, springs, rods and hinges, and fast bodies have more sub-steps.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "base/four.hpp"
+#include "physics/assemblies.hpp"
 #include "physics/disk_contacts.hpp"
 #include "physics/hull_contacts.hpp"
+#include "physics/island_links.hpp"
 #include "physics/islands.hpp"
 #include "physics/mover.hpp"
 #include "physics/soft_membranes.hpp"
@@ -31,7 +33,8 @@ public:
 
     /// Moves the bodies of an island by one time step: poses (except heading_dir) and velocities. Returns whether any
     /// of them overlap at the end. `is_driven`: motors have just changed velocities.
-    bool solve(World& world, DiskContacts& contacts, Islands const& islands, Island const& island, bool is_driven);
+    bool solve(World& world, Assemblies& assemblies, DiskContacts& contacts, Islands const& islands,
+               Island const& island, bool is_driven);
 
 private:
     struct Contact {
@@ -66,12 +69,16 @@ private:
     };
 
     bool solve_soft(World const& world, DiskContacts& contacts, bool is_driven);
+    int substeps_of(float dt_s) const;
     void solve_velocities_softly(float h_s, bool pushes);
+    /// Disks alone may turn as fast as they like.
+    bool turns_matter() const { return !hulls_.empty() || !links_.empty(); }
     float fastest_mm_s() const;
     float fastest_turn_rad_s() const;
-    bool limit_speeds(float most_mm_s);
+    bool limit_speeds(float most_mm_s, float most_rad_s);
     std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
-    void gather(World const& world, DiskContacts const& contacts, Islands const& islands, Island const& island);
+    void gather(World const& world, Assemblies& assemblies, DiskContacts const& contacts, Islands const& islands,
+                Island const& island);
     void scatter(World& world) const;
     Survey measure(World const& world, DiskContacts const& contacts, Times const& times);
     Places find_places(World const& world, DiskContacts const& contacts, std::span<Contact const> four,
@@ -80,6 +87,9 @@ private:
     void move(float time_s);
     void push_as_before(std::vector<float> const& driven_impulse);
     void keep_impulses(std::vector<float>& driven_impulse) const;
+    double kinetic_energy(Vec2 drift_mm_s) const;
+    Vec2 drift_mm_s() const;
+    void limit_energy(double most);
     void mark(Contact& contact);
     void mark_overlaps();
     void solve_velocities(float h_s, bool pushes);
@@ -92,6 +102,7 @@ private:
     std::uint32_t pair_count_ = 0;  // contacts between two movable bodies, which come first
     HullContacts hulls_;
     SoftMembranes membranes_;
+    IslandLinks links_;
     float most_motion_mm_;  // in a sub-step, in worlds with membranes
 
     // Contacts lie in up to 64 blocks of 2^block_shift_. A dirty block has contacts to solve again.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "base/four.hpp"
 
@@ -13,14 +12,19 @@ namespace {
 
 constexpr std::uint32_t kLeastRange = 2048;  // contacts
 
-}  // namespace
-
-Islands::Islands(World const& world) : alone_(world.bodies.size()) {
-    std::iota(alone_.begin(), alone_.end(), 0U);
-    for (Membrane const& membrane : world.membranes) {
-        std::fill_n(alone_.begin() + membrane.body, membrane.body_count, membrane.body);
-    }
+/// A turning disk moves nothing but a link that is attached to its rim. A link that pulls will move its bodies.
+bool is_moving(World const& world, Assembly const& assembly) {
+    Bodies const& bodies = world.bodies;
+    bool const can_turn = !assembly.hinges.empty() || !assembly.links.empty();
+    return std::ranges::any_of(assembly.bodies,
+                               [&](std::uint32_t body) {
+                                   return bodies.velocity_mm_s[body] != Vec2{} ||
+                                          (can_turn && bodies.angular_velocity_rad_s[body] != 0.0F);
+                               }) ||
+           std::ranges::any_of(assembly.links, [&](std::uint32_t link) { return world.links[link].tension_n != 0.0F; });
 }
+
+}  // namespace
 
 /// The root of a body's tree, with path halving: R. E. Tarjan, "Efficiency of a good but not linear set union
 /// algorithm", Journal of the ACM 22 (1975) 215.
@@ -134,24 +138,21 @@ void Islands::link(DiskContacts const& contacts) {
     }
 }
 
-/// Appends each soft membrane to the list of its island. A moving membrane keeps its island active; without contacts,
-/// it is an island of its own.
-void Islands::link_membranes(World const& world, Reach const& reach) {
-    next_membrane_.assign(world.membranes.size(), kNone);
-    for (std::uint32_t i = 0; i < world.membranes.size(); ++i) {
-        Membrane const& membrane = world.membranes[i];
-        auto const first = world.bodies.velocity_mm_s.begin() + membrane.body;
-        bool const moves =
-            reach.wakes_membranes ||
-            std::any_of(first, first + membrane.body_count, [](Vec2 velocity_mm_s) { return velocity_mm_s != Vec2{}; });
-        std::uint32_t& island = island_[root_of(membrane.body)];
+/// Appends each assembly to the list of its island. A moving assembly keeps its island active; without contacts, it is
+/// an island of its own.
+void Islands::link_assemblies(World const& world, Assemblies const& assemblies, Reach const& reach) {
+    next_assembly_.assign(assemblies.all().size(), kNone);
+    for (std::uint32_t i = 0; i < next_assembly_.size(); ++i) {
+        Assembly const& assembly = assemblies.all()[i];
+        bool const moves = reach.wakes_assemblies || is_moving(world, assembly);
+        std::uint32_t& island = island_[root_of(assembly.bodies.front())];
         if (island == kNone && moves) {
             island = static_cast<std::uint32_t>(islands_.size());
             islands_.emplace_back();
         }
         if (island != kNone) {
-            next_membrane_[i] = islands_[island].first_membrane;
-            islands_[island].first_membrane = i;
+            next_assembly_[i] = islands_[island].first_assembly;
+            islands_[island].first_assembly = i;
             islands_[island].is_active = islands_[island].is_active || moves;
         }
     }
@@ -169,19 +170,21 @@ void Islands::mark_bodies(DiskContacts const& contacts) {
     }
 }
 
-void Islands::mark_membranes(World const& world) {
+void Islands::mark_assemblies(Assemblies const& assemblies) {
     for (Island const& island : islands_) {
-        for (std::uint32_t i = island.first_membrane; island.is_active && i != kNone; i = next_membrane_[i]) {
-            Membrane const& membrane = world.membranes[i];
-            std::fill_n(has_contact_.begin() + membrane.body, membrane.body_count, std::uint8_t{1});
+        for (std::uint32_t i = island.first_assembly; island.is_active && i != kNone; i = next_assembly_[i]) {
+            for (std::uint32_t const body : assemblies.all()[i].bodies) {
+                has_contact_[body] = 1;
+            }
         }
     }
 }
 
-void Islands::find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers) {
-    parent_ = alone_;
-    island_.assign(alone_.size(), kNone);
-    has_contact_.assign(alone_.size(), 0);
+void Islands::find(World const& world, Assemblies const& assemblies, DiskContacts const& contacts, Reach const& reach,
+                   WorkerPool& workers) {
+    parent_ = assemblies.first_bodies();
+    island_.assign(parent_.size(), kNone);
+    has_contact_.assign(parent_.size(), 0);
     links_.clear();
     meets_.clear();
     auto const count = static_cast<std::uint32_t>(contacts.near().size());
@@ -200,9 +203,9 @@ void Islands::find(World const& world, DiskContacts const& contacts, Reach const
     });
     unite(contacts);
     link(contacts);
-    link_membranes(world, reach);
+    link_assemblies(world, assemblies, reach);
     mark_bodies(contacts);
-    mark_membranes(world);
+    mark_assemblies(assemblies);
 }
 
 }  // namespace pogosim

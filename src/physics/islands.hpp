@@ -1,6 +1,6 @@
 // Bodies that touch, directly or through others, are an island: D. Baraff, "Rigid body simulation", SIGGRAPH course
 // notes 1997. Within a time step, islands do not interact. Walls and fixed bodies do not connect the bodies that touch
-// them; the bodies of a soft membrane are always in one island.
+// them; bodies that joints and links hold together are always in one island.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,19 @@
 #include <vector>
 
 #include "base/worker_pool.hpp"
+#include "physics/assemblies.hpp"
 #include "physics/disk_contacts.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
 
-/// Contacts of one island: a list in Islands::links(). Its membranes: a list in Islands::next_membranes().
+/// Contacts of one island: a list in Islands::links(). Its assemblies: a list in Islands::next_assemblies().
 struct Island {
-    std::uint32_t first = kNone;  // kNone: no contacts, only a moving membrane
+    std::uint32_t first = kNone;  // kNone: no contacts, only a moving assembly
     std::uint32_t last = kNone;
     std::uint32_t contact_count = 0;
-    std::uint32_t first_membrane = kNone;
-    bool is_active = false;  // bodies touch within this step, or a membrane moves
+    std::uint32_t first_assembly = kNone;
+    bool is_active = false;  // bodies touch within this step, or an assembly moves
 };
 
 struct IslandLink {
@@ -28,24 +29,23 @@ struct IslandLink {
 };
 
 struct Reach {
-    float reach_mm;                // bodies with smaller gaps are in one island
-    bool wakes_membranes = false;  // membranes at rest count as moving
+    float reach_mm;                 // bodies with smaller gaps are in one island
+    bool wakes_assemblies = false;  // those at rest count as moving
 };
 
 class Islands {
 public:
-    explicit Islands(World const& world);
-
     /// Finds the islands for the present positions and velocities.
-    void find(World const& world, DiskContacts const& contacts, Reach const& reach, WorkerPool& workers);
+    void find(World const& world, Assemblies const& assemblies, DiskContacts const& contacts, Reach const& reach,
+              WorkerPool& workers);
 
-    /// Sorted by their first contacts; islands that are a single membrane come last. The contacts of each are in the
+    /// Sorted by their first contacts; islands that are a single assembly come last. The contacts of each are in the
     /// order of DiskContacts::near().
     std::span<Island const> islands() const { return islands_; }
     std::span<IslandLink const> links() const { return links_; }
 
-    /// For each membrane of the world, the next one in the same island; kNone: it is the last one.
-    std::span<std::uint32_t const> next_membranes() const { return next_membrane_; }
+    /// For each assembly, the next one in the same island; kNone: it is the last one.
+    std::span<std::uint32_t const> next_assemblies() const { return next_assembly_; }
 
     /// Whether the body is in an active island.
     bool has_contact(std::uint32_t body) const { return has_contact_[body] != 0; }
@@ -66,18 +66,17 @@ private:
                            std::vector<Close>& found);
     void unite(DiskContacts const& contacts);
     void link(DiskContacts const& contacts);
-    void link_membranes(World const& world, Reach const& reach);
+    void link_assemblies(World const& world, Assemblies const& assemblies, Reach const& reach);
     void mark_bodies(DiskContacts const& contacts);
-    void mark_membranes(World const& world);
+    void mark_assemblies(Assemblies const& assemblies);
 
-    std::vector<std::uint32_t> alone_;   // for each body: itself, or the first body of its soft membrane
     std::vector<std::uint32_t> parent_;  // for each body, in the disjoint-set forest
     std::vector<std::uint32_t> island_;  // for each root; kNone: none
     std::vector<std::uint8_t> has_contact_;
     std::vector<std::vector<Close>> close_;  // for each range of contacts, during the search
     std::vector<IslandLink> links_;          // in the order of DiskContacts::near()
     std::vector<std::uint8_t> meets_;        // for each link: its bodies touch within this step
-    std::vector<std::uint32_t> next_membrane_;
+    std::vector<std::uint32_t> next_assembly_;
     std::vector<Island> islands_;
 };
 

@@ -47,20 +47,19 @@ protected:
     PhysicsEngine(PhysicsEngine const&) = default;
 };
 
-/// Stands for the fastest engine that can move what is in the world.
+/// Stands for the engine that suits every world: our own.
 inline constexpr std::string_view kAutomaticEngine = "auto";
 
 /// Names that make_physics_engine() knows: kAutomaticEngine, then the engines.
 std::vector<std::string> const& physics_engine_names();
 
-/// The engine that a name stands for in this world: `name` itself, unless it is kAutomaticEngine.
-std::string const& physics_engine_behind(std::string const& name, World const& world);
+/// The engine that a name stands for: `name` itself, unless it is kAutomaticEngine.
+std::string const& physics_engine_behind(std::string const& name);
 
 /// Whether the simulator is built with Box2D.
 bool has_box2d_engine();
 
-/// Why this engine cannot move what is in the world, and what can: "does not move ...; use auto or box2d".
-/// Empty if it can.
+/// Why this engine cannot move what is in the world, and what can: "is not there: ...; use auto". Empty if it can.
 std::string why_unfit(std::string const& name, World const& world, bool has_box2d = has_box2d_engine());
 
 /// An engine for the arena and the bodies as they are in the world now. `name`: one of the known ones. `workers`, which
@@ -71,7 +70,6 @@ std::unique_ptr<PhysicsEngine> make_physics_engine(std::string const& name, Worl
 
 // The engines.
 std::unique_ptr<PhysicsEngine> make_disk_engine(World const& world, WallSpec const& walls, WorkerPool& workers);
-std::string why_unfit_for_disk_engine(World const& world);
 std::unique_ptr<PhysicsEngine> make_box2d_engine(World const& world, WallSpec const& walls, WorkerPool& workers);
 
 }  // namespace pogosim

@@ -55,17 +55,18 @@ void SoftMembranes::clear() {
 void SoftMembranes::add(World const& world, std::uint32_t membrane, std::span<Mover const> movers, std::uint32_t first,
                         std::span<SpringImpulse const> impulses) {
     std::uint32_t const first_body = world.membranes[membrane].body;
-    added_.push_back({.membrane = membrane,
-                      .first_mover = first,
-                      .mover_count = world.membranes[membrane].body_count,
-                      .first_spring = static_cast<std::uint32_t>(springs_.size())});
+    added_.push_back({.membrane = membrane, .first_mover = first, .mover_count = world.membranes[membrane].body_count});
     float const stiffest_hz = kMostSwingsPerStep / static_cast<float>(world.time_step_s);
     auto const [first_joint, joint_count] = joints_[membrane];
     for (std::uint32_t i = first_joint; i < first_joint + joint_count; ++i) {
         Joint const& joint = world.joints[i];
+        if (joint.length_mm == 0.0F) {
+            continue;
+        }
         std::uint32_t const a = first + (joint.a - first_body);
         std::uint32_t const b = first + (joint.b - first_body);
-        springs_.push_back({.a = a,
+        springs_.push_back({.joint = i,
+                            .a = a,
                             .b = b,
                             .length_mm = joint.length_mm,
                             .longest_mm = (1.0F + joint.max_stretch) * joint.length_mm * (joint.max_stretch > 0.0F),
@@ -83,11 +84,8 @@ void SoftMembranes::forget_impulses() {
 }
 
 void SoftMembranes::keep_impulses(std::span<SpringImpulse> impulses) const {
-    for (Added const& added : added_) {
-        auto const [first_joint, joint_count] = joints_[added.membrane];
-        for (std::uint32_t k = 0; k < joint_count; ++k) {
-            impulses[first_joint + k] = springs_[added.first_spring + k].impulse;
-        }
+    for (Spring const& spring : springs_) {
+        impulses[spring.joint] = spring.impulse;
     }
 }
 

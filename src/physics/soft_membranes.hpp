@@ -29,14 +29,14 @@ public:
     void clear();
 
     /// Adds a membrane, an index into World::membranes, whose bodies are `movers[first]` and those that follow.
-    /// `impulses`: of all joints of the world.
+    /// `impulses`: of all joints of the world. Its hinges are left out, see IslandLinks.
     void add(World const& world, std::uint32_t membrane, std::span<Mover const> movers, std::uint32_t first,
              std::span<SpringImpulse const> impulses);
 
     void forget_impulses();
     void keep_impulses(std::span<SpringImpulse> impulses) const;
 
-    bool empty() const { return springs_.empty(); }
+    bool empty() const { return added_.empty(); }
 
     /// Pushes the membranes towards their areas, and measures the springs. `push_rate`: speed at which a spring that is
     /// too long is pulled back, per mm of excess length, 1/s. Returns whether any spring is too long.
@@ -48,7 +48,8 @@ public:
 
 private:
     struct Spring {
-        std::uint32_t a;  // into the movers
+        std::uint32_t joint;  // into World::joints
+        std::uint32_t a;      // into the movers
         std::uint32_t b;
         float length_mm;   // at rest
         float longest_mm;  // 0: no limit
@@ -68,7 +69,6 @@ private:
         std::uint32_t membrane;
         std::uint32_t first_mover;
         std::uint32_t mover_count;
-        std::uint32_t first_spring;
     };
 
     struct Joints {

@@ -129,7 +129,7 @@ std::vector<std::pair<std::string, std::string>> Recorder::metadata() const {
                         {.seed = seed_,
                          .time_step_s = world_.time_step_s,
                          .is_periodic = world_.periodic,
-                         .physics_engine = physics_engine_behind(scenario_.physics_engine, world_)});
+                         .physics_engine = physics_engine_behind(scenario_.physics_engine)});
 }
 
 void Recorder::make_data_file() {

@@ -41,7 +41,7 @@ std::unique_ptr<SavedRun> Simulation::save() {
     auto physics = physics_->copy();
     if (!physics) {
         throw ConfigError(fmt::format("the state of this run cannot be saved: its physics engine ({}) cannot be copied",
-                                      physics_engine_behind(scenario_.physics_engine, world_)));
+                                      physics_engine_behind(scenario_.physics_engine)));
     }
     auto saved = std::make_unique<SavedRun>(SavedRun{.world = world_,
                                                      .lighting = lighting_,

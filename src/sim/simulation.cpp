@@ -63,10 +63,6 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     if (std::string const reason = why_unfit(engine, world); !reason.empty()) {
         throw ConfigError(fmt::format("{}: {} {}", place_of(scenario, Setting::physics_engine), engine, reason));
     }
-    if (std::string const reason = why_unfit_for_disk_engine(world); engine == kAutomaticEngine && !reason.empty()) {
-        log().info("physics_engine: {}, since disk {}{}", physics_engine_behind(engine, world), reason,
-                   world.periodic ? "; bodies do not meet across the borders of the arena" : "");
-    }
     auto const purpose = [&] { return fmt::format("the physics of {} bodies", world.bodies.size()); };
     try {
         return allocate_for(purpose, std::nullopt,
@@ -350,7 +346,7 @@ std::optional<UserFailure> Simulation::start() {
     Thread const thread(*this);
     log().debug("seed {}, {} with {} bytes of user data each, {} steps of {} s, physics engine {}, threads: {}", seed_,
                 counted(world_.robots.size(), "robot"), controllers_.user_data_bytes(), step_count(),
-                world_.time_step_s, physics_engine_behind(scenario_.physics_engine, world_), workers_.size());
+                world_.time_step_s, physics_engine_behind(scenario_.physics_engine), workers_.size());
     lighting_.update(world_);
     bool const is_own = scenario_.robot_memory == RobotMemoryKind::automatic
                             ? controllers_.image().is_for_sdk

@@ -229,30 +229,19 @@ TEST_P(Motion, BodyLeavingAPeriodicWorldComesBackOnTheOtherSide) {
 
 POGOSIM_FOR_EACH_ENGINE(Motion);
 
-TEST(WhyUnfit, NamesWhatCannotMoveAndWhatCan) {
-    World boxes = square_world();
-    ObjectSpec box = body(0.5F);
-    box.shape = {.kind = ShapeKind::rectangle, .width_mm = 50, .height_mm = 20};
-    add_robot(boxes, {500, 500}, 0.0F, box);
-    boxes.objects = {{.body = 0, .body_count = 1}};
-    World segments = boxes;
-    segments.objects = {{.body = 0, .body_count = 2}};
-    std::string const moves_none = "does not move membranes of segments ('robots')";
-
+TEST(WhyUnfit, NamesWhatIsMissingAndWhatIsThere) {
+    World linked = square_world();
+    add_robot(linked, {500, 500}, 0.0F, body(0.5F));
+    linked.links = {{.a = 0, .end_a_mm = {}, .end_b_mm = {500, 500}}};
     for (bool const has_box2d : {true, false}) {
-        EXPECT_EQ(why_unfit("auto", boxes, has_box2d), "");
-        EXPECT_EQ(why_unfit("disk", boxes, has_box2d), "");
+        EXPECT_EQ(why_unfit("auto", linked, has_box2d), "");
+        EXPECT_EQ(why_unfit("disk", linked, has_box2d), "");
     }
-    EXPECT_EQ(why_unfit("box2d", boxes, true), "");
-    EXPECT_EQ(why_unfit("box2d", boxes, false), "is not there: this simulator was built without Box2D 2.4; use auto");
-    EXPECT_EQ(why_unfit("auto", segments, true), "");
-    EXPECT_EQ(why_unfit("disk", segments, true), moves_none + "; use auto or box2d");
-    EXPECT_EQ(why_unfit("disk", segments, false), moves_none + "; use type: membrane");
-    for (std::string const name : {"auto", "box2d"}) {
-        EXPECT_EQ(why_unfit(name, segments, false),
-                  "has no engine for it: disk " + moves_none +
-                      ", and this simulator was built without Box2D 2.4; use type: membrane");
-    }
+    EXPECT_EQ(why_unfit("box2d", linked, true), "");
+    EXPECT_EQ(why_unfit("box2d", linked, false), "is not there: this simulator was built without Box2D 2.4; use auto");
+    linked.periodic = true;
+    EXPECT_EQ(why_unfit("box2d", linked, true), "does not hold links in a periodic arena; use auto");
+    EXPECT_EQ(why_unfit("disk", linked, true), "");
 }
 
 }  // namespace

@@ -25,17 +25,17 @@ using Group = std::set<std::uint32_t>;
 /// All that is needed to find islands in a world.
 struct Finder {
     explicit Finder(World const& world)
-        : walls(world.arena), pairs(world), wall_neighbour_list(world, walls), contacts(world, {}), islands(world) {
+        : walls(world.arena), pairs(world), wall_neighbour_list(world, walls), contacts(world, {}), assemblies(world) {
         build(world);
     }
 
     void build(World const& world) {
         pairs.build(world, kReachMm, workers);
         wall_neighbour_list.build(world, walls, pairs.skin_mm());
-        contacts.build(world, pairs, wall_neighbour_list);
+        contacts.build(world, assemblies, pairs, wall_neighbour_list);
     }
 
-    void find(World const& world) { islands.find(world, contacts, {.reach_mm = kReachMm}, workers); }
+    void find(World const& world) { islands.find(world, assemblies, contacts, {.reach_mm = kReachMm}, workers); }
 
     Group bodies_of(Island const& island) const {
         Group bodies;
@@ -54,6 +54,7 @@ struct Finder {
     NeighbourList pairs;
     WallNeighbourList wall_neighbour_list;
     DiskContacts contacts;
+    Assemblies assemblies;
     Islands islands;
 };
 
@@ -179,7 +180,7 @@ TEST(Islands, HoldTogetherWhatASoftMembraneJoins) {
     ASSERT_EQ(at_rest.islands.islands().size(), 1U);
     Island const& island = at_rest.islands.islands()[0];
     EXPECT_FALSE(island.is_active);
-    EXPECT_EQ(island.first_membrane, 0U);
+    EXPECT_EQ(island.first_assembly, 0U);
     EXPECT_TRUE(at_rest.bodies_of(island).contains(1));
     EXPECT_TRUE(at_rest.bodies_of(island).contains(2));
     EXPECT_FALSE(at_rest.bodies_of(island).contains(0));

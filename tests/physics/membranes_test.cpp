@@ -1,8 +1,10 @@
-// Soft membranes of disks by themselves: what physics says of them, with each engine.
+// Soft membranes of disks and of segments by themselves: what physics says of them, with each engine.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <tuple>
 
 #include "base/random.hpp"
 #include "geometry/polygon.hpp"
@@ -17,6 +19,12 @@ using testing::add_ring;
 using testing::make_engine;
 
 class Membranes : public testing::EachEngine {};
+
+class MembranesOfBothKinds : public ::testing::TestWithParam<std::tuple<std::string, bool>> {
+protected:
+    void SetUp() override { testing::engine_name = std::get<0>(GetParam()); }
+    bool segments() const { return std::get<1>(GetParam()); }
+};
 
 World ring_world(testing::RingSpec const& ring = {}) {
     World world = testing::square_world();
@@ -65,18 +73,18 @@ double energy(World const& world) {
     return sum;
 }
 
-TEST_P(Membranes, FlyStraightAtConstantSpeed) {
-    World world = ring_world({.centre_mm = {300, 300}});
+TEST_P(MembranesOfBothKinds, FlyStraightAtConstantSpeed) {
+    World world = ring_world({.centre_mm = {300, 300}, .segments = segments()});
     world.bodies.velocity_mm_s.assign(world.bodies.size(), {100, 50});
     run(world, 4.0);
     Vec2 const middle_mm = centre_mm(world, world.objects[0]);
     EXPECT_NEAR(middle_mm.x, 700.0F, 0.5F);
     EXPECT_NEAR(middle_mm.y, 500.0F, 0.5F);
-    EXPECT_NEAR(signed_area(line_of(world)) / signed_area(line_of(ring_world())), 1.0, 1e-3);
+    EXPECT_NEAR(signed_area(line_of(world)) / signed_area(line_of(ring_world({.segments = segments()}))), 1.0, 1e-3);
 }
 
-TEST_P(Membranes, KeepTheirMomentumWhileTheyShake) {
-    World world = ring_world();
+TEST_P(MembranesOfBothKinds, KeepTheirMomentumWhileTheyShake) {
+    World world = ring_world({.segments = segments()});
     RandomStream random(3, 0);
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         Vec2 const turning = {-(world.bodies.position_mm[i].y - 500.0F), world.bodies.position_mm[i].x - 500.0F};
@@ -90,17 +98,18 @@ TEST_P(Membranes, KeepTheirMomentumWhileTheyShake) {
     EXPECT_LT(length(mean_velocity_mm_s(world) - drift_mm_s), 0.1F);
     EXPECT_NEAR(angular_momentum(world) / turning, 1.0, 0.02);
     EXPECT_LT(energy(world), first_energy);  // springs are damped
-    EXPECT_NEAR(signed_area(line_of(world)) / signed_area(line_of(ring_world())), 1.0, 0.02);
+    EXPECT_NEAR(signed_area(line_of(world)) / signed_area(line_of(ring_world({.segments = segments()}))), 1.0, 0.02);
 }
 
-TEST_P(Membranes, BecomeRoundAgainAfterTheyWereCrushed) {
-    World world = ring_world({.damping_per_s = 2.0F});
+TEST_P(MembranesOfBothKinds, BecomeRoundAgainAfterTheyWereCrushed) {
+    World world = ring_world({.damping_per_s = 2.0F, .segments = segments()});
     double const area_mm2 = signed_area(line_of(world));
     auto const engine = make_engine(world, {});
     // An ellipse of 0.6 times the area.
     for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
         Vec2 const way = world.bodies.position_mm[i] - Vec2{500, 500};
-        set_pose(world.bodies, i, Vec2{500.0F + 0.6F * way.x, 500.0F + way.y}, 0.0F);
+        Vec2 const ahead = direction(world.bodies.heading_rad[i]);
+        set_pose(world.bodies, i, Vec2{500.0F + 0.6F * way.x, 500.0F + way.y}, std::atan2(ahead.y, 0.6F * ahead.x));
     }
     for (int step = 0; step < 1000; ++step) {
         engine->advance(world);
@@ -112,8 +121,8 @@ TEST_P(Membranes, BecomeRoundAgainAfterTheyWereCrushed) {
     }
 }
 
-TEST_P(Membranes, ComeToRestAndStayThere) {
-    World world = ring_world({.damping_per_s = 3.0F});
+TEST_P(MembranesOfBothKinds, ComeToRestAndStayThere) {
+    World world = ring_world({.damping_per_s = 3.0F, .segments = segments()});
     world.bodies.velocity_mm_s.assign(world.bodies.size(), {50, 20});
     auto const engine = make_engine(world, {});
     for (int step = 0; step < 600; ++step) {
@@ -123,6 +132,40 @@ TEST_P(Membranes, ComeToRestAndStayThere) {
     EXPECT_EQ(energy(world), 0.0);
     engine->advance(world);
     EXPECT_EQ(world.bodies.position_mm, before_mm);
+}
+
+TEST_P(MembranesOfBothKinds, StayInOnePieceWhileRobotsPushFromInside) {
+    World world = testing::square_world();
+    Membrane const membrane = add_ring(world, {.dots = 40, .damping_per_s = 1.0F, .segments = segments()});
+    RandomStream random(5, 0);
+    for (int k = 0; k < 12; ++k) {
+        Vec2 const place_mm{410.0F + 60.0F * static_cast<float>(k % 4), 440.0F + 60.0F * static_cast<float>(k / 4)};
+        std::uint32_t const robot = testing::add_body(world, place_mm, 0.0F, testing::pogobot_spec());
+        world.objects.push_back({.id = robot, .body = robot, .body_count = 1});
+    }
+    auto const engine = make_engine(world, {});
+    for (int step = 0; step < 1500; ++step) {
+        for (std::uint32_t robot = membrane.body_count; robot < world.bodies.size(); ++robot) {
+            if (step % 50 == 0) {
+                world.bodies.heading_rad[robot] = random.uniform(-3.0F, 3.0F);
+            }
+            set_velocity(world.bodies, robot, 80.0F * direction(world.bodies.heading_rad[robot]), 0.0F);
+        }
+        engine->advance(world);
+        for (Joint const& joint : world.joints) {
+            if (joint.length_mm == 0.0F) {
+                auto const end_mm = [&](std::uint32_t body, Vec2 own_mm) {
+                    return world.bodies.position_mm[body] + rotate(own_mm, direction(world.bodies.heading_rad[body]));
+                };
+                float const apart_mm = length(end_mm(joint.a, joint.anchor_a_mm) - end_mm(joint.b, joint.anchor_b_mm));
+                ASSERT_LT(apart_mm, 1.5F) << "step " << step;
+            }
+        }
+    }
+    Polygon const line(world.bodies.position_mm.begin(), world.bodies.position_mm.begin() + membrane.body_count);
+    for (std::uint32_t robot = membrane.body_count; robot < world.bodies.size(); ++robot) {
+        EXPECT_TRUE(contains(line, world.bodies.position_mm[robot])) << robot;
+    }
 }
 
 TEST_P(Membranes, SpringsDoNotStretchBeyondTheirLimitByMuchWhenTheyArePulled) {
@@ -154,6 +197,11 @@ TEST_P(Membranes, SpringsDoNotStretchBeyondTheirLimitByMuchWhenTheyArePulled) {
 }
 
 POGOSIM_FOR_EACH_ENGINE(Membranes);
+INSTANTIATE_TEST_SUITE_P(Physics, MembranesOfBothKinds,
+                         ::testing::Combine(::testing::Values("box2d", "disk"), ::testing::Bool()),
+                         [](auto const& info) {
+                             return std::get<0>(info.param) + (std::get<1>(info.param) ? "_segments" : "_disks");
+                         });
 
 }  // namespace
 }  // namespace pogosim

@@ -1,6 +1,7 @@
 // Worlds made by hand, for tests of single stages.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -124,6 +125,7 @@ struct RingSpec {
     std::uint32_t dots = 80;
     float dot_radius_mm = 10.0F;
     float damping_per_s = 0.0F;
+    bool segments = false;  // rectangles joined by hinges, twice the radius thick
 };
 
 /// A round membrane that springs hold together, without a robot: a body, as add_body() makes it, for each dot. Each is
@@ -137,19 +139,35 @@ inline Membrane add_ring(World& world, RingSpec const& ring) {
         return ring.centre_mm +
                ring.radius_mm * direction(6.2831853F * static_cast<float>(k) / static_cast<float>(ring.dots));
     };
+    float const side_mm = length(place_mm(1) - place_mm(0));
+    if (ring.segments) {
+        spec.shape = {.kind = ShapeKind::rectangle, .width_mm = side_mm, .height_mm = 2.0F * ring.dot_radius_mm};
+    }
     for (std::uint32_t k = 0; k < ring.dots; ++k) {
-        add_body(world, place_mm(k), 0.0F, spec);
+        Vec2 const way_mm = place_mm(k + 1) - place_mm(k);
+        Vec2 const middle_mm = place_mm(k) + 0.5F * way_mm;
+        add_body(world, ring.segments ? middle_mm : place_mm(k), ring.segments ? std::atan2(way_mm.y, way_mm.x) : 0.0F,
+                 spec);
     }
     for (std::uint32_t k = 0; k < ring.dots; ++k) {
         for (std::uint32_t const span : {1U, 3U}) {
-            world.joints.push_back({.a = membrane.body + k,
-                                    .b = membrane.body + (k + span) % ring.dots,
-                                    .anchor_a_mm = {},
-                                    .anchor_b_mm = {},
-                                    .length_mm = length(place_mm(k + span) - place_mm(k)),
-                                    .stiffness_hz = span == 1 ? 30.0F : 24.0F,
-                                    .damping_ratio = 0.3F,
-                                    .max_stretch = span == 1 ? 0.05F : 0.0F});
+            if (ring.segments && span == 1) {
+                world.joints.push_back({.a = membrane.body + k,
+                                        .b = membrane.body + (k + 1) % ring.dots,
+                                        .anchor_a_mm = {0.5F * side_mm, 0.0F},
+                                        .anchor_b_mm = {-0.5F * side_mm, 0.0F}});
+                continue;
+            }
+            world.joints.push_back(
+                {.a = membrane.body + k,
+                 .b = membrane.body + (k + span) % ring.dots,
+                 .anchor_a_mm = {},
+                 .anchor_b_mm = {},
+                 .length_mm = length(world.bodies.position_mm[membrane.body + (k + span) % ring.dots] -
+                                     world.bodies.position_mm[membrane.body + k]),
+                 .stiffness_hz = span == 1 ? 30.0F : 24.0F,
+                 .damping_ratio = 0.3F,
+                 .max_stretch = span == 1 ? 0.05F : 0.0F});
         }
     }
     world.membranes.push_back(membrane);
