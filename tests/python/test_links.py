@@ -6,11 +6,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
 from batches import run_main
-from running import ROOT, example, run, run_command, warnings, write_scene
+from running import ROOT, by_robot, example, run, run_command, warnings, write_scene
 
 PAGE = ROOT / "docs" / "links.md"
 BLOCKS = re.findall(r"^```yaml\n# (\w+\.yaml)\n(.*?)^```$", PAGE.read_text(), flags=re.DOTALL | re.MULTILINE)
@@ -84,3 +85,36 @@ def test_links_are_in_the_resolved_configuration(tmp_path: Path) -> None:
     resolved = yaml.safe_load(metadata[b"resolved_configuration"])
     assert resolved["links"]["skeleton"]["stiffness"] == 3
     assert resolved["links"]["skeleton"]["rest_length"] == "initial"
+
+
+def moved(name: str, folder: Path, engine: str) -> pd.DataFrame:
+    """Return the robots' rows of a configuration of the page that has run for 10 s."""
+    (folder / name).write_text(dict(BLOCKS)[name])
+    settings = ["simulation_time=10", "save_data_period=0.5", "seed=1", f"physics_engine={engine}"]
+    arguments = ["-c", name, "-g", *(word for setting in settings for word in ("--set", setting))]
+    done = run_command(example("helloworld"), folder, arguments)
+    assert warnings(done) == []
+    rows = done.frame()
+    return rows[rows["robot_category"] == "robots"]
+
+
+@pytest.mark.parametrize("engine", ["disk", "box2d"])
+def test_exoskeleton_of_the_page_moves_within_its_pinned_rim(engine: str, tmp_path: Path) -> None:
+    rows = moved("exoskeleton.yaml", tmp_path, engine)
+    places = np.stack([by_robot(rows, "x"), by_robot(rows, "y")], axis=-1)
+    furthest = np.linalg.norm(places - places[0], axis=-1).max(axis=0)
+    assert furthest[19:].max() < 0.5
+    assert furthest[:19].min() > 5.0
+    assert np.linalg.norm(places - places[0, 0], axis=-1).max() < 3 * 80 + 0.5
+
+
+@pytest.mark.parametrize("engine", ["disk", "box2d"])
+def test_link_bot_of_the_page_keeps_its_v(engine: str, tmp_path: Path) -> None:
+    rows = moved("link_bot.yaml", tmp_path, engine)
+    turned = np.degrees(np.diff(by_robot(rows, "angle"), axis=1)[:, 0])
+    against_start = (turned - turned[0] + 180.0) % 360.0 - 180.0
+    assert against_start.min() > -15.0 - 3.0
+    assert against_start.max() < 30.0 + 3.0
+    places = np.stack([by_robot(rows, "x"), by_robot(rows, "y")], axis=-1)
+    assert np.linalg.norm(places[:, 1] - places[:, 0], axis=-1).max() < 60.0 + 0.5
+    assert np.linalg.norm(places[-1] - places[0], axis=-1).min() > 20.0
