@@ -34,6 +34,8 @@ FORMATIONS = (
     "aligned_random_near_walls",
     "aligned_disk",
     "aligned_chessboard",
+    "lattice",
+    "aligned_lattice",
     "lloyd",
     "power_lloyd",
     "imported",
@@ -87,12 +89,13 @@ def draw_swarm(axes: Axes, data: Path) -> pd.DataFrame:
 
 def draw(folder: Path) -> dict[str, Picture]:
     """Draw all formations in one figure."""
-    figure = Figure(figsize=(9.0, 7.4), layout="constrained")
-    panels = list(figure.subplots(3, 4).flat)
-    spread = ("chessboard", {"formation_cluster_at_center": False})
+    figure = Figure(figsize=(11.0, 7.4), layout="constrained")
+    panels = list(figure.subplots(3, 5).flat)
+    panels_of: list[tuple[str, dict[str, object]]] = [(name, {}) for name in FORMATIONS]
+    panels_of += [("chessboard", {"formation_cluster_at_center": False}), ("lattice", {"lattice_kind": "square"})]
     drawn = []
     (folder / "spiral.csv").write_text(spiral(), encoding="utf-8")
-    for axes, (name, options) in zip(panels, [*((name, {}) for name in FORMATIONS), spread], strict=True):
+    for axes, (name, options) in zip(panels, panels_of, strict=True):
         drawn.append(draw_swarm(axes, place(folder, name, options)))
         axes.set_title("\n".join([name, *(f"{k}: {str(v).lower()}" for k, v in options.items())]), fontsize=8)
     return {"formations.png": from_figure(figure, 85, *drawn)}

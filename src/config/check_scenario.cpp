@@ -16,6 +16,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/check_links.hpp"
 #include "config/old_names.hpp"
 #include "config/source.hpp"
 #include "config/values.hpp"
@@ -311,6 +312,9 @@ void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& r
         collect([&] { check_light_levels(scenario); });
         collect([&] { check_cpu_time(scenario); });
         collect([&] { check_scripts(scenario); });
+        for (LinkConfig const& link : scenario.links) {
+            collect([&] { check_link(scenario, link); });
+        }
     }
     collect([&] { check_file_names(scenario); });
     collect([&] { check_frames_name(scenario); });

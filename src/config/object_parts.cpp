@@ -26,7 +26,7 @@ std::span<Key<BodySpec> const> body_keys() {
           "Rate at which the speed of a free body decays; 0: it slides on without slowing down."},
         K{"body_angular_damping", &BodySpec::angular_damping, at_least(0).up_to(1e12), "1/s",
           "Rate at which the angular velocity of a free body decays; 0: it spins on without slowing down."},
-        K{"body_density", &BodySpec::density, between(0, 1e15), "per (100 mm)^2",
+        K{"body_density", &BodySpec::density, between(0, 1e15), "kg per (100 mm)^2",
           "Mass per area; below 1e-10, as light as with 1e-10."},
         K{"body_friction", &BodySpec::friction, between(0, 1000), "",
           "Coulomb friction coefficient; a contact uses the geometric mean of both bodies'."},

@@ -158,6 +158,14 @@ std::string place_of(Scenario const& scenario, ObjectConfig const& object, Objec
                        object.item ? fmt::format(".{}", *object.item) : "", key);
 }
 
+std::string place_of(Scenario const& scenario, LinkConfig const& link, std::string_view key) {
+    Node const* const links = source_of(scenario).tree.find("links");
+    Node const* const entry = links != nullptr ? links->find(link.name) : nullptr;
+    Node const* const value = entry != nullptr ? entry->find(key) : nullptr;
+    std::string const line = value != nullptr ? value->where() : link.line;
+    return fmt::format("{}{}links.{}.{}", line, line.empty() ? "" : ": ", shown(link.name), key);
+}
+
 bool is_written(Scenario const& scenario, Setting setting) {
     return find_path(source_of(scenario).tree, key_of(setting)) != nullptr;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "config/scenario.hpp"
 
@@ -54,6 +55,9 @@ std::string place_of(Scenario const& scenario, Setting setting);
 
 /// "conf/a.yaml:14: objects.robots.radius".
 std::string place_of(Scenario const& scenario, ObjectConfig const& object, ObjectSetting setting);
+
+/// "conf/a.yaml:14: links.skeleton.file"; of a key that is absent the line of the entry.
+std::string place_of(Scenario const& scenario, LinkConfig const& link, std::string_view key);
 
 /// The line of the key that the error names: "conf/a.yaml:14".
 std::string line_of(Scenario const& scenario, FormationError const& error);

@@ -7,6 +7,7 @@
 #include "config/brain_keys.hpp"
 #include "config/flash_keys.hpp"
 #include "config/function_costs.hpp"
+#include "config/link_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/model_keys.hpp"
 #include "config/object_parts.hpp"
@@ -60,6 +61,8 @@ std::vector<KeyGroup> configuration_reference() {
         groups.push_back(
             {fmt::format("objects.<category>.{}", table.name), "", std::string(table.doc), std::move(table.keys)});
     }
+
+    groups.push_back({"links.<name>", "", "Links between objects.", link_keys_reference()});
 
     MapReader magnetometer(nothing, "magnetometer", reading);
     read_magnetometer_map(magnetometer);

@@ -9,6 +9,7 @@
 #include "config/batch_names.hpp"
 #include "config/check_options.hpp"
 #include "config/check_scenario.hpp"
+#include "config/link_keys.hpp"
 #include "config/object_types.hpp"
 #include "config/option_keys.hpp"
 #include "config/other_level.hpp"
@@ -171,6 +172,9 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     reader.collect([&] { objects = read_objects(reader.find("objects"), reading, scenario.objects); });
     bool const objects_are_right = reading.problems.messages().size() == before;
     reader.set_value("objects", std::move(objects));
+    Node links;
+    reader.collect([&] { links = read_links(reader, scenario.links); });
+    reader.set_value("links", std::move(links));
     for (ObjectConfig& object : scenario.objects) {
         if (object.spec.robot && !object.spec.robot->flash) {
             object.spec.robot->flash = scenario.flash;

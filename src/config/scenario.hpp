@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/link_config.hpp"
 #include "config/magnetometer_config.hpp"
 #include "config/reading.hpp"
 #include "geometry/formation.hpp"
@@ -138,6 +139,7 @@ struct Scenario {
     ViewConfig view;
     OutputConfig output;
     std::vector<ObjectConfig> objects;           // in the order of the file
+    std::vector<LinkConfig> links;               // the same
     std::vector<ObjectFile> object_files;        // robot models and scripts of these
     std::shared_ptr<ConfigSource const> source;  // what was written; null for one put together in code
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "config/flash_keys.hpp"
+#include "config/link_keys.hpp"
 #include "config/magnetometer_keys.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
@@ -88,6 +89,8 @@ std::span<Key<Scenario> const> scenario_keys() {
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."},
+        K{"links", Elsewhere{kLinksMap}, any(), "",
+          "Springs, rods and hinges between objects, by names of your own; see their own table."},
         K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."},
         // For the batch and optimisation tools; the simulator reads past them.
         K{"pogobatch", Elsewhere{"a map of keys"}, any(), "", "For batch tools: their settings."},
@@ -131,7 +134,10 @@ std::span<Key<FormationSpec> const> formation_keys() {
     constexpr auto has_attempts = [](FormationSpec const& spec) {
         return is_one_of(spec, {"random", "random_near_walls"});
     };
-    constexpr auto has_centre = [](FormationSpec const& spec) { return is_one_of(spec, {"disk", "chessboard"}); };
+    constexpr auto has_centre = [](FormationSpec const& spec) {
+        return is_one_of(spec, {"disk", "chessboard", "lattice"});
+    };
+    constexpr auto is_a_lattice = [](FormationSpec const& spec) { return is_lattice(spec.name); };
     constexpr auto is_chessboard = [](FormationSpec const& spec) { return is_one_of(spec, {"chessboard"}); };
     constexpr auto is_imported = [](FormationSpec const& spec) { return spec.name == kImportedFormation; };
     NamedValues<std::string> names;
@@ -144,7 +150,7 @@ std::span<Key<FormationSpec> const> formation_keys() {
         K{"initial_formation_root_object", &FormationSpec::root_object, any(), "",
           "Category whose outline bounds the formation; arena: the walls."},
         K{"initial_formation_center", &FormationSpec::centre_mm, kCoordinate.or_nan(), "mm",
-          "Centre of disk and chessboard formations; .nan: the centroid of the outer wall."}
+          "Centre of disk, chessboard and lattice formations; .nan: the centroid of the outer wall."}
             .only_if(has_centre),
         K{"formation_min_space_between_neighbors", &FormationSpec::min_space_mm, between(0, kMaxLength), "mm",
           "Smallest radius assumed for an object during placement."},
@@ -162,6 +168,17 @@ std::span<Key<FormationSpec> const> formation_keys() {
             .only_if(is_chessboard),
         K{"formation_cluster_at_center", &FormationSpec::cluster_at_centre, any(), "",
           "chessboard: place objects around the centre; false: spread them over the arena."},
+        K{"lattice_kind",
+          one_of(&FormationSpec::lattice_kind,
+                 {{"triangular", LatticeKind::triangular}, {"square", LatticeKind::square}}),
+          any(), "",
+          "lattice: triangular (six neighbours each, a patch with the outline of a hexagon) or square (four "
+          "neighbours, a patch with the outline of a square)."}
+            .only_if(is_a_lattice),
+        K{"lattice_distance_between_neighbors", &FormationSpec::lattice_spacing_mm, kLength, "mm",
+          "lattice: distance between the centres of neighbours; default: 2.021 times the radius of the largest object, "
+          "or as many times formation_min_space_between_neighbors if that is larger."}
+            .only_if(is_a_lattice),
         K{"formation_filename", &FormationSpec::filename, any(), "",
           "imported: CSV or Feather file with columns x, y and optionally angle; searched like arena_file."}
             .needing_a_name(),

@@ -28,8 +28,8 @@ struct Formation {
     bool aligned;
 };
 
-std::array<Formation, 11> const& formations() {
-    static std::array<Formation, 11> const table{{
+std::array<Formation, 13> const& formations() {
+    static std::array<Formation, 13> const table{{
         {"random", place_random, false},
         {"aligned_random", place_random, true},
         {"random_near_walls", place_near_walls, false},
@@ -40,6 +40,8 @@ std::array<Formation, 11> const& formations() {
         {"power_lloyd", place_power_lloyd, false},
         {"chessboard", place_chessboard, false},
         {"aligned_chessboard", place_chessboard, true},
+        {"lattice", place_lattice, false},
+        {"aligned_lattice", place_lattice, true},
         {"imported", place_imported, false},
     }};
     return table;
@@ -74,6 +76,9 @@ void check_spec(FormationSpec const& spec) {
         {"chessboard_distance_between_neighbors",
          std::isfinite(spec.chessboard_pitch_mm) && spec.chessboard_pitch_mm > 0.0F, "a finite length > 0 mm",
          spec.chessboard_pitch_mm},
+        {kLatticeSpacingKey,
+         !spec.lattice_spacing_mm || (std::isfinite(*spec.lattice_spacing_mm) && *spec.lattice_spacing_mm > 0.0F),
+         "a finite length > 0 mm", spec.lattice_spacing_mm.value_or(0.0F)},
     };
     for (Rule const& rule : rules) {
         if (!rule.holds) {
@@ -125,6 +130,17 @@ float random_heading(RandomStream& random) {
 }
 
 }  // namespace
+
+bool is_lattice(std::string_view name) {
+    auto const found = std::ranges::find(formations(), name, &Formation::name);
+    return found != formations().end() && found->place == place_lattice;
+}
+
+float lattice_spacing_of(FormationSpec const& spec, std::span<float const> radii_mm) {
+    std::vector<float> const placed = placement_radii(spec, radii_mm);
+    float const largest_mm = placed.empty() ? 0.0F : *std::ranges::max_element(placed);
+    return lattice_spacing(spec, largest_mm);
+}
 
 std::span<std::string const> formation_names() {
     static std::vector<std::string> const names = [] {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +36,10 @@ struct CategoryCount {
     std::size_t count = 0;
 };
 
-/// The keys `initial_formation*`, `formation_*`, `chessboard_*` and `imported_*` of a configuration.
+/// How the nodes of a lattice are arranged: six neighbours each, or four.
+enum class LatticeKind { triangular, square };
+
+/// The keys `initial_formation*`, `formation_*`, `chessboard_*`, `lattice_*` and `imported_*` of a configuration.
 struct FormationSpec {
     std::string name = "power_lloyd";
     std::string root_object = "arena";  // category whose contour bounds the formation; "", "null" or "arena": the arena
@@ -46,10 +50,12 @@ struct FormationSpec {
     int max_restarts = 100;                                       // restarts before giving up
     float chessboard_pitch_mm = 100.0F;
     bool cluster_at_centre = true;  // chessboard: rings around the centre; false: spread over the bounding box
-    std::string filename;           // imported: csv or feather
-    RowsOfOthers rows_of_others{};  // imported
-    std::vector<CategoryCount> categories{};  // imported: of all objects that get a row, in their order
-    std::vector<std::string> placed_apart{};  // imported: categories that get none
+    LatticeKind lattice_kind = LatticeKind::triangular;
+    std::optional<float> lattice_spacing_mm{};  // between neighbours; absent: lattice_spacing_of()
+    std::string filename;                       // imported: csv or feather
+    RowsOfOthers rows_of_others{};              // imported
+    std::vector<CategoryCount> categories{};    // imported: of all objects that get a row, in their order
+    std::vector<std::string> placed_apart{};    // imported: categories that get none
     Vec2 imported_min{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
     Vec2 imported_max{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
 };
@@ -124,6 +130,13 @@ constexpr char const* kImportedFormation = "imported";
 
 /// Reads all poses of a file that is not text. Its mistakes are ConfigErrors.
 using PoseReader = std::function<ImportedPoses(std::filesystem::path const&)>;
+
+/// Distance between neighbours of a lattice of objects of these radii: that of the spec, or as near as a formation puts
+/// the two largest ones to each other.
+float lattice_spacing_of(FormationSpec const& spec, std::span<float const> radii_mm);
+
+/// Whether a formation of this name is a lattice.
+bool is_lattice(std::string_view name);
 
 /// Names of all formations, in the table's order.
 std::span<std::string const> formation_names();

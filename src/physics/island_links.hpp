@@ -25,7 +25,7 @@ public:
 
     float fastest_swing_rad_s() const { return springs_and_rods_.fastest_swing_rad_s(); }
 
-    /// Whether some are rigid: what is wrong with these is corrected in each sub-step, and the speed of that taken back.
+    /// Whether some are rigid: what is wrong with these is corrected in each sub-step, and that speed taken back.
     bool has_rigid() const { return springs_and_rods_.has_rods() || !hinges_.empty(); }
 
     /// Measures all at the start of a sub-step, lets springs pull and the others push as in the last one.

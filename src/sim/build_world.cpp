@@ -26,6 +26,7 @@
 #include "physics/coinciding_centres.hpp"
 #include "sim/imported_objects.hpp"
 #include "sim/magnetometers.hpp"
+#include "sim/make_links.hpp"
 #include "sim/make_membrane.hpp"
 #include "sim/place_objects.hpp"
 #include "world/assert_world.hpp"
@@ -307,6 +308,8 @@ World built_world(Scenario const& scenario, std::uint32_t seed) {
     warn_of_gaps(scenario);
     allocate_for([&] { return objects_text(scenario); }, std::nullopt, [&] { add_objects(scenario, world, seed); });
     part_bodies(world.bodies);
+    allocate_for([] { return std::string("the links between objects"); }, std::nullopt,
+                 [&] { make_links(scenario, world); });
     warn_of_repeated_ids(world);
     make_mailboxes(world);
     auto const devices = [&] { return fmt::format("the devices of {}", counted(world.robots.size(), "robot")); };

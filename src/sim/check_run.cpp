@@ -66,8 +66,8 @@ void check_files(Scenario const& scenario, CheckOptions const& options, Problems
 bool is_world_known(Problems const& problems) {
     constexpr std::array<std::string_view, 4> kKeys{"arena_file", "arena_surface", "arena_stretch",
                                                     "boundary_condition"};
-    constexpr std::array<std::string_view, 5> kBeginnings{"objects", "initial_formation", "formation_", "chessboard",
-                                                          "imported_formation"};
+    constexpr std::array<std::string_view, 7> kBeginnings{
+        "objects", "initial_formation", "formation_", "chessboard", "imported_formation", "lattice", "links"};
     return std::ranges::none_of(problems.paths(), [&](std::string const& path) {
         return std::ranges::find(kKeys, path) != kKeys.end() ||
                std::ranges::any_of(kBeginnings, [&](std::string_view key) { return path.starts_with(key); });

@@ -205,6 +205,18 @@ void place_entries(Scenario const& scenario, FormationSpec const& formation, For
 
 }  // namespace
 
+float lattice_spacing_mm(Scenario const& scenario, ObjectConfig const& object) {
+    std::vector<float> radii{outer_radius_mm(object.spec)};
+    std::size_t const root = root_entry(scenario);
+    for (std::size_t i = 0; i < scenario.objects.size() && !object.own_formation.is_given(); ++i) {
+        ObjectConfig const& other = scenario.objects[i];
+        if (i != root && is_placed_by_formation(other) && !other.own_formation.is_given() && other.nb > 0) {
+            radii.push_back(outer_radius_mm(other.spec));
+        }
+    }
+    return lattice_spacing_of(scenario.formation, radii);
+}
+
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed) {
     std::vector<std::vector<Placement>> poses(scenario.objects.size());
     std::vector<std::size_t> entries;      // for the formation

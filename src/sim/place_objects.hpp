@@ -17,4 +17,7 @@ namespace pogosim {
 /// bound a formation.
 std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, World const& world, std::uint32_t seed);
 
+/// Distance between neighbours in the lattice in which a formation places the objects of this entry, mm.
+float lattice_spacing_mm(Scenario const& scenario, ObjectConfig const& object);
+
 }  // namespace pogosim

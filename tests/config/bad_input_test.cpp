@@ -50,6 +50,9 @@ std::string head_for(KeyGroup const& group) {
     if (group.path == "magnetometer") {
         return kRobots + "magnetometer:\n  ";
     }
+    if (group.path == "links.<name>") {
+        return kRobots + "links:\n  skin:\n    between: robots\n    topology: nearest\n    ";
+    }
     std::string const geometry = group.type == "pogowall" ? "arena" : "disk";
     return "objects:\n  robots: {type: pogobot, geometry: disk}\n  thing:\n    type: " + group.type +
            "\n    geometry: " + geometry + "\n    ";
@@ -197,7 +200,7 @@ TEST(BadInput, WrongRobots) {
          {"    nb: {batch_options: [1], default_option: arenas/disk.csv}",
           "objects.robots.nb: expected an integer from 0 to 10000000, found 'arenas/disk.csv'"},
          {"    body_density: -1",
-          "objects.robots.body_density: expected a number from 0 to 1000000000000000 (per (100 mm)^2), found -1"},
+          "objects.robots.body_density: expected a number from 0 to 1000000000000000 (kg per (100 mm)^2), found -1"},
          {"    body_restitution: 1.8", "objects.robots.body_restitution: expected a number from 0 to 1, found 1.8"},
          {"    communication_radius: -3",
           "objects.robots.communication_radius: expected a number from 0 to 1000000 (mm), found -3"},

@@ -65,6 +65,8 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(f.attempts_per_point, 100);
     EXPECT_EQ(f.max_restarts, 100);
     EXPECT_EQ(f.chessboard_pitch_mm, 100.0F);
+    EXPECT_EQ(f.lattice_kind, LatticeKind::triangular);
+    EXPECT_EQ(f.lattice_spacing_mm, std::nullopt);
     EXPECT_TRUE(f.cluster_at_centre);
     EXPECT_EQ(f.filename, "");
     EXPECT_TRUE(std::isnan(f.imported_min.x) && std::isnan(f.imported_max.y));

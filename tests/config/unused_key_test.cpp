@@ -23,6 +23,8 @@ std::string const kThing = "objects:\n  robots: {type: pogobot}\n  it:\n    ";
 std::vector<Case> const kCases{
     {"initial_formation: chessboard", "initial_formation: random", "chessboard_distance_between_neighbors: 0",
      "chessboard_distance_between_neighbors: far"},
+    {"initial_formation: aligned_lattice", "initial_formation: disk", "lattice_distance_between_neighbors: 0",
+     "lattice_distance_between_neighbors: far"},
     {"initial_formation: random", "initial_formation: disk", "formation_attempts_per_point: 0",
      "formation_attempts_per_point: few"},
     {"initial_formation: random_near_walls", "initial_formation: lloyd", "formation_max_restarts: -1",

@@ -153,7 +153,8 @@ TEST_P(EveryFormation, ObjectsOfManySizesStandLegally) {
     radii[3] = 5.0F;
     radii[4] = 0.5F;
     for (std::string const arena_name : {"disk", "square", "H", "arena9"}) {
-        Arena const arena = shipped(arena_name, 2.0e6);
+        // Neighbours of a lattice are as far apart as its two largest objects would be.
+        Arena const arena = shipped(arena_name, is_lattice(GetParam()) ? 8.0e6 : 2.0e6);
         expect_legal(place_seeded(named(GetParam()), radii, arena, 1), radii, arena, GetParam() + " in " + arena_name);
     }
 }
@@ -249,6 +250,11 @@ TEST(Formation, ValuesThatMakeNoSenseAreRefusedWithTheirKey) {
         FormationSpec spec;
         spec.chessboard_pitch_mm = bad;
         EXPECT_TRUE(error_of(spec, robots(1), arena).starts_with("chessboard_distance_between_neighbors: ")) << bad;
+    }
+    for (float const bad : {-1.0F, 0.0F, nan, inf}) {
+        FormationSpec spec;
+        spec.lattice_spacing_mm = bad;
+        EXPECT_TRUE(error_of(spec, robots(1), arena).starts_with("lattice_distance_between_neighbors: ")) << bad;
     }
     FormationSpec no_attempts;
     no_attempts.attempts_per_point = 0;
@@ -462,6 +468,99 @@ TEST(ChessboardFormation, TooManyForTheGridAreRefusedWithTheNumberOfPlaces) {
     EXPECT_NE(error_of(spec, robots(100), shipped("square")).find("room for only 81 of 100"), std::string::npos);
     spec.cluster_at_centre = false;
     EXPECT_NE(error_of(spec, robots(122), shipped("square")).find("at most 121 places"), std::string::npos);
+}
+
+FormationSpec lattice(LatticeKind kind) {
+    FormationSpec spec = named("lattice");
+    spec.lattice_kind = kind;
+    return spec;
+}
+
+/// Pairs of objects at this distance; none are nearer.
+std::size_t pairs_apart(std::vector<Placement> const& placements, float spacing_mm) {
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            float const apart_mm = length(placements[i].position_mm - placements[j].position_mm);
+            EXPECT_GT(apart_mm, spacing_mm - kTolerance);
+            pairs += apart_mm < spacing_mm + kTolerance ? 1 : 0;
+        }
+    }
+    return pairs;
+}
+
+Box box_around(std::vector<Placement> const& placements) {
+    Polygon places;
+    std::ranges::transform(placements, std::back_inserter(places), &Placement::position_mm);
+    return bounding_box(places);
+}
+
+TEST(LatticeFormation, HasAsManyPairsOfNeighboursAsThatManyNodesCanHave) {
+    // F. Harary and H. Harborth, "Extremal animals", 1976.
+    Arena const arena = shipped("square", 4.0e6);
+    float const spacing_mm = lattice_spacing_of(named("lattice"), robots(1));
+    EXPECT_NEAR(spacing_mm, 2.02F * kRobotRadius, 0.1F);
+    for (std::size_t count = 1; count <= 130; ++count) {
+        auto const n = static_cast<double>(count);
+        auto const most_triangular = static_cast<std::size_t>(3.0 * n - std::ceil(std::sqrt(12.0 * n - 3.0)));
+        auto const most_square = static_cast<std::size_t>(2.0 * n - std::ceil(2.0 * std::sqrt(n)));
+        auto const triangular = place_seeded(lattice(LatticeKind::triangular), robots(count), arena, 1);
+        auto const square = place_seeded(lattice(LatticeKind::square), robots(count), arena, 1);
+        EXPECT_EQ(pairs_apart(triangular, spacing_mm), most_triangular) << count;
+        EXPECT_EQ(pairs_apart(square, spacing_mm), most_square) << count;
+    }
+}
+
+TEST(LatticeFormation, ShellsOfATriangularPatchAreHexagonsAroundTheFirstNode) {
+    Arena const arena = shipped("square", 4.0e6);
+    FormationSpec spec = lattice(LatticeKind::triangular);
+    spec.lattice_spacing_mm = 80.0F;
+    spec.centre_mm = {900.0F, 1100.0F};
+    for (std::size_t shells = 0; shells <= 6; ++shells) {
+        auto const placements = place_seeded(spec, robots(1 + 3 * shells * (shells + 1)), arena, 1);
+        EXPECT_NEAR(length(placements[0].position_mm - spec.centre_mm), 0.0F, kTolerance);
+        EXPECT_EQ(pairs_apart(placements, 80.0F), 3 * shells * (3 * shells + 1));
+        float reach_mm = 0.0F;
+        for (Placement const& placement : placements) {
+            reach_mm = std::max(reach_mm, length(placement.position_mm - spec.centre_mm));
+        }
+        EXPECT_NEAR(reach_mm, 80.0F * static_cast<float>(shells), kTolerance);
+    }
+}
+
+TEST(LatticeFormation, SquarePatchIsCentredWithRowsAndColumnsThatDifferByOneAtMost) {
+    Arena const arena = shipped("square", 4.0e6);
+    FormationSpec spec = lattice(LatticeKind::square);
+    spec.lattice_spacing_mm = 60.0F;
+    for (std::size_t rows = 1; rows <= 7; ++rows) {
+        for (std::size_t const columns : {rows, rows + 1}) {
+            auto const placements = place_seeded(spec, robots(rows * columns), arena, 1);
+            Box const box = box_around(placements);
+            EXPECT_NEAR(length(box.centre() - arena.bounds.centre()), 0.0F, kTolerance);
+            auto const [shorter, longer] =
+                std::pair(std::min(box.size().x, box.size().y), std::max(box.size().x, box.size().y));
+            EXPECT_NEAR(shorter, 60.0F * static_cast<float>(rows - 1), kTolerance);
+            EXPECT_NEAR(longer, 60.0F * static_cast<float>(columns - 1), kTolerance);
+            EXPECT_EQ(pairs_apart(placements, 60.0F), 2 * rows * columns - rows - columns);
+        }
+    }
+}
+
+TEST(LatticeFormation, SpacingBelowTheDiameterIsRefused) {
+    FormationSpec spec = named("lattice");
+    spec.lattice_spacing_mm = 50.0F;
+    EXPECT_EQ(error_of(spec, robots(4), shipped("square")),
+              "lattice_distance_between_neighbors: 50 mm is too little for 4 objects (largest radius 26.5 mm); it must "
+              "be at least 53.56 mm");
+}
+
+TEST(LatticeFormation, TooManyForTheArenaAreRefusedWithTheNumberOfNodes) {
+    FormationSpec spec = lattice(LatticeKind::square);
+    spec.lattice_spacing_mm = 100.0F;
+    EXPECT_EQ(
+        error_of(spec, robots(101), shipped("square")),
+        "initial_formation: 'lattice' has room for only 90 of 101 objects (largest radius 26.5 mm) in this arena; "
+        "reduce nb, lower lattice_distance_between_neighbors, or enlarge arena_surface");
 }
 
 /// Standard deviation over mean of the distance to the nearest other.

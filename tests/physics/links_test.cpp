@@ -50,7 +50,7 @@ void add_box(World& world, Vec2 place_mm, float width_mm, float height_mm) {
     add(world, place_mm, testing::rectangle(width_mm, height_mm));
 }
 
-/// Of a disk, kg.
+/// A disk's mass, kg.
 constexpr float kMassKg = 10.0F * kPi * kRadiusMm * kRadiusMm * 1e-4F;
 
 Link spring(std::uint32_t a, std::uint32_t b, float length_mm, float stiffness_n_m, float damping_n_s_m = 0.0F) {

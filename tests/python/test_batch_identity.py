@@ -77,6 +77,7 @@ def test_runs_differ_with_the_program_and_the_seed(tasks: Tasks) -> None:
         {"objects": {"a": [{"image": "mine.csv"}]}},
         {"objects": {"a": {"robot_model": "mine.csv"}}},
         {"objects": {"a": [{"brain": {"script": "mine.csv"}}]}},
+        {"links": {"a": {"file": "mine.csv"}}},
     ],
 )
 def test_runs_differ_when_a_file_does_that_their_configuration_names(

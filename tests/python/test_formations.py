@@ -28,6 +28,8 @@ FORMATIONS = [
     "power_lloyd",
     "chessboard",
     "aligned_chessboard",
+    "lattice",
+    "aligned_lattice",
 ]
 
 MEMBRANE: dict[str, Any] = {

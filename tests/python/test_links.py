@@ -1,204 +1,120 @@
-"""Links between bodies from Python: `Simulation.links`, `link` and `cut`."""
+"""`links` of a configuration in complete runs: those of the page, files beside the configuration, batches, mistakes."""
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Iterator
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pogosim
+import pandas as pd
 import pytest
-from pogosim.picture.swarm import read_recording
-from pogosim.simulation import ConfigurationError
-from running import ROOT, write_scene
+import yaml
+from batches import run_main
+from running import ROOT, by_robot, example, run, run_command, warnings, write_scene
 
-PUCK = {"type": "passive_object", "nb": 1, "geometry": "disk", "radius": 20.0}
-MEMBRANE = {"type": "membrane", "nb": 1, "geometry": "disk", "radius": 100.0, "num_dots": 40}
-PUCK_INDEX = 3  # objects in the order of the scene: three robots, a puck
+PAGE = ROOT / "docs" / "links.md"
+BLOCKS = re.findall(r"^```yaml\n# (\w+\.yaml)\n(.*?)^```$", PAGE.read_text(), flags=re.DOTALL | re.MULTILINE)
 
-
-@pytest.fixture
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
-    return write_scene(
-        tmp_path,
-        {"objects.pucks": PUCK, "objects.robots.nb": 3, "arena_file": str(ROOT / "arenas" / "disk.csv")},
-    )
+PAIRS: dict[str, Any] = {
+    "initial_formation": "lattice",
+    "lattice_distance_between_neighbors": 80,
+    "objects.robots.nb": 7,
+    "simulation_time": 0.1,
+    "links": {"skeleton": {"between": "robots", "topology": "list", "file": "pairs.csv"}},
+}
 
 
-@pytest.fixture
-def still(hosted: Path, scene: Path) -> Iterator[pogosim.Simulation]:
-    """A run without a data file."""
-    with pogosim.Simulation(hosted, scene, set={"enable_data_logging": False}) as simulation:
-        yield simulation
+@pytest.mark.parametrize(("name", "text"), BLOCKS, ids=[name for name, _ in BLOCKS])
+def test_configurations_of_the_page_run_without_a_warning(name: str, text: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    arguments = ["-c", name, "-g", "--strict", "--set", "simulation_time=1"]
+    assert warnings(run_command(example("helloworld"), tmp_path, arguments)) == []
+    assert len(BLOCKS) == 3
 
 
-def between(sim: pogosim.Simulation, a: int, b: int) -> float:
-    return math.dist(sim.objects[a].position, sim.objects[b].position)
+def test_list_of_links_is_found_beside_the_configuration(tmp_path: Path) -> None:
+    conf = write_scene(tmp_path / "conf", PAIRS)
+    (conf.parent / "pairs.csv").write_text("a,b\n0,1\n1,2\n")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    assert warnings(run_command(example("helloworld"), elsewhere, ["-c", str(conf), "-g"])) == []
+    options = ["-c", str(conf), "-S", str(example("helloworld")), "-t", "tmp", "-o", "results", "-r", "1"]
+    done = run_main(elsewhere, options)
+    assert done.code == 0, done.text
+    (conf.parent / "pairs.csv").write_text("a,b\n0,7\n")
+    done = run_main(elsewhere, options)
+    assert "pairs.csv:2: b: expected the number of an object, 0 to 6, found 7" in done.errors
 
 
-def test_links_are_read_as_arrays(sim: pogosim.Simulation) -> None:
-    assert len(sim.links) == 0
-    puck = sim.objects.of("pucks")[0]
-    assert sim.link(0, 1, stiffness=2.0, damping=0.5, breaking_force=3.0, length=40.0, end_a=(20.0, 5.0)) == 0
-    assert sim.link(sim.objects[2], puck, "rod") == 1
-    assert sim.link(1, (500.0, 510.0), "spring", damping=1) == 2
-    links = sim.links
-    assert links["kind"].tolist() == ["spring", "rod", "spring"]
-    assert links["a"].tolist() == [0, 2, 1]
-    assert links["b"].tolist() == [1, PUCK_INDEX, -1]
-    assert links["robot_a"].tolist() == [0, 2, 1]
-    assert links["robot_b"].tolist() == [1, -1, -1]
-    np.testing.assert_allclose(links["end_a_mm"][0], [20.0, 5.0])
-    np.testing.assert_allclose(links["end_b_mm"][2], [500.0, 510.0])
-    np.testing.assert_allclose(links["rest_mm"], [40.0, between(sim, 2, 3), links["length_mm"][2]], rtol=1e-5)
-    assert links["stiffness_n_m"].tolist() == [2.0, 0.0, 0.0]
-    assert links["damping_n_s_m"].tolist() == [0.5, 0.0, 1.0]
-    assert links["breaking_n"].tolist() == [3.0, np.inf, np.inf]
-    assert links["length_mm"][1] == pytest.approx(between(sim, 2, 3), rel=1e-5)
-    assert links["tension_n"].tolist() == [0.0, 0.0, 0.0]
-    assert links["is_cut"].tolist() == [False] * 3
+def test_list_of_links_is_not_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "pairs.csv").write_text("a,b\n0,1\n")
+    done = run(example("helloworld"), tmp_path, PAIRS | {"data_filename": "pairs.csv"})
+    assert done.code == 2
+    assert "data_filename: 'pairs.csv' is the same file as the list of links 'pairs.csv'" in done.errors
 
 
-def test_hinge_holds_what_is_halfway_and_has_limits(sim: pogosim.Simulation) -> None:
-    sim.link(0, 1, "hinge", limits=(-0.5, 1.0))
-    (hinge,) = sim.links
-    assert hinge["length_mm"] == pytest.approx(0.0, abs=1e-3)
-    assert (hinge["least_rad"], hinge["most_rad"], hinge["rest_mm"]) == (-0.5, 1.0, 0.0)
-    assert np.hypot(*hinge["end_a_mm"]) == pytest.approx(between(sim, 0, 1) / 2.0, rel=1e-5)
+def test_mistakes_are_told_with_file_and_line_and_all_at_once(tmp_path: Path) -> None:
+    links = {
+        "skin": {"between": "robot", "topology": "chain"},
+        "core": {"between": "robots", "topology": "square"},
+        "rope": {"between": "robots", "topology": "chain", "stiffness": -3},
+    }
+    done = run(example("helloworld"), tmp_path, PAIRS | {"links": links}, ["--check-config"])
+    assert done.code == 2
+    for path in ("skin.between: there is no category", "core.topology: the lattice is", "rope.stiffness: expected"):
+        assert re.search(rf"scene\.yaml:\d+: links\.{path}", done.errors), done.errors
 
 
-def test_links_are_cut_by_index_by_array_or_where_something_is_true(sim: pogosim.Simulation) -> None:
-    for stiffness in (1.0, 2.0, 3.0, 4.0, 5.0):
-        sim.link(0, 1, stiffness=stiffness)
-    sim.cut(4)
-    assert sim.links["is_cut"].tolist() == [False] * 4 + [True]
-    sim.cut(np.array([0, 4]))
-    sim.cut(sim.links["stiffness_n_m"] == 2.0)
-    sim.cut([])
-    assert sim.links["is_cut"].tolist() == [True, True, False, False, True]
-    assert sim.link(0, 2, stiffness=1.0) == 5
+def test_options_of_links_are_combinations_of_a_batch(tmp_path: Path) -> None:
+    skeleton = {"between": "robots", "topology": "triangular", "stiffness": {"batch_options": [1, 10]}}
+    settings = PAIRS | {"links": {"skeleton": skeleton}, "result_new_columns": ["links.skeleton.stiffness"]}
+    conf = write_scene(tmp_path, settings)
+    options = ["-c", str(conf), "-S", str(example("helloworld")), "-t", "tmp", "-o", "results", "-r", "1"]
+    done = run_main(tmp_path, options)
+    assert done.code == 0, done.text
+    tables = [pd.read_feather(path) for path in (tmp_path / "results").glob("*.feather")]
+    assert sorted({value for table in tables for value in table["links.skeleton.stiffness"]}) == [1, 10]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "options", "message"),
-    [
-        ((0, 0), {"stiffness": 1}, "object 0 cannot be linked to itself"),
-        ((0, 9), {}, "b: there is no object 9: the run has 4"),
-        ((-1, 1), {}, "a: there is no object -1: the run has 4"),
-        ((0, "x"), {}, "b: expected an integer, found 'x'"),
-        ((0, (1.0, 2.0, 3.0)), {}, r"b: expected 2 numbers, found \(1.0, 2.0, 3.0\)"),
-        ((0, 1, "rope"), {}, "kind: expected 'spring', 'rod' or 'hinge', found 'rope'"),
-        ((0, 1), {}, "stiffness: a spring without stiffness and damping would do nothing"),
-        ((0, 1), {"stiffness": -1}, "stiffness: expected a finite number of at least 0, found -1"),
-        ((0, 1), {"stiffness": math.inf}, "stiffness: expected a finite number, found inf"),
-        ((0, 1), {"stiffness": 1, "breaking_force": math.nan}, "breaking force: expected a number above 0, found nan"),
-        ((0, 1, "rod"), {"length": 1.0}, "length: a rod of 1 mm does not fit ends that are "),
-        ((0, 1), {"stiffness": 1, "limits": (-1, 1)}, "limits: only hinges have some"),
-        ((0, 1, "hinge"), {"limits": (0.5, 1)}, "least angle: expected a number of at most 0, found 0.5"),
-        ((0, (1, 2)), {"stiffness": 1, "end_b": (0, 0)}, "end_b: b is a place, which has no end of its own"),
-    ],
-)
-def test_wrong_link_is_refused(
-    sim: pogosim.Simulation, arguments: tuple[Any, ...], options: dict[str, Any], message: str
-) -> None:
-    with pytest.raises(ConfigurationError, match=message):
-        sim.link(*arguments, **options)
-    assert len(sim.links) == 0
+def test_links_are_in_the_resolved_configuration(tmp_path: Path) -> None:
+    links = {"skeleton": {"between": "robots", "topology": "triangular", "stiffness": 3}}
+    done = run(example("helloworld"), tmp_path, PAIRS | {"links": links})
+    assert done.code == 0, done.text
+    metadata = done.table().schema.metadata or {}
+    resolved = yaml.safe_load(metadata[b"resolved_configuration"])
+    assert resolved["links"]["skeleton"]["stiffness"] == 3
+    assert resolved["links"]["skeleton"]["rest_length"] == "initial"
 
 
-@pytest.mark.parametrize(
-    ("links", "message"),
-    [
-        (1, "links: there is no link 1: the run has 1"),
-        ([0, -1], "links: there is no link -1: the run has 1"),
-        ([True, False], "links: expected 1 values of True or False, one for each, found 2"),
-        (0.5, "links: expected an index, an array of indices, or True or False for each link, found 0.5"),
-        ("all", "links: expected an index"),
-    ],
-)
-def test_wrong_cut_is_refused_and_cuts_nothing(sim: pogosim.Simulation, links: Any, message: str) -> None:
-    sim.link(0, 1, stiffness=1.0)
-    with pytest.raises(ConfigurationError, match=message):
-        sim.cut(links)
-    assert not sim.links["is_cut"].any()
+def moved(name: str, folder: Path, engine: str) -> pd.DataFrame:
+    """Return the robots' rows of a configuration of the page that has run for 10 s."""
+    (folder / name).write_text(dict(BLOCKS)[name])
+    settings = ["simulation_time=10", "save_data_period=0.5", "seed=1", f"physics_engine={engine}"]
+    arguments = ["-c", name, "-g", *(word for setting in settings for word in ("--set", setting))]
+    done = run_command(example("helloworld"), folder, arguments)
+    assert warnings(done) == []
+    rows = done.frame()
+    return rows[rows["robot_category"] == "robots"]
 
 
-def test_data_file_says_that_links_were_made_and_when(sim: pogosim.Simulation) -> None:
-    sim.step(10)
-    sim.link(0, PUCK_INDEX, stiffness=1e-3)
-    sim.link(1, (500.0, 500.0), stiffness=1e-3)
-    sim.step(10)
-    sim.cut(0)
-    sim.step(10)
-    sim.end()
-    rows = sim.to_dataframe()
-    assert rows.attrs["touched"] == f"3 times from t = {10 * sim.time_step:.4f} s on: links made or cut"
-    changes = json.loads(rows.attrs["link_changes"])
-    assert changes["made"]["objects"] == [["robots", 0], ["robots", 1], ["pucks", sim.objects[PUCK_INDEX].id]]
-    assert changes["made"]["b"] == [2, -1]
-    np.testing.assert_allclose(changes["made"]["time_s"], [11 * sim.time_step] * 2)
-    assert changes["cut"]["link"] == [0]
-    np.testing.assert_allclose(changes["cut"]["time_s"], [21 * sim.time_step])
-    links = read_recording(sim.data_file).last.links
-    assert links is not None
-    assert [len(links.at(steps * sim.time_step)) for steps in (10, 11, 20, 21)] == [0, 2, 2, 1]
+@pytest.mark.parametrize("engine", ["disk", "box2d"])
+def test_exoskeleton_of_the_page_moves_within_its_pinned_rim(engine: str, tmp_path: Path) -> None:
+    rows = moved("exoskeleton.yaml", tmp_path, engine)
+    places = np.stack([by_robot(rows, "x"), by_robot(rows, "y")], axis=-1)
+    furthest = np.linalg.norm(places - places[0], axis=-1).max(axis=0)
+    assert furthest[19:].max() < 0.5
+    assert furthest[:19].min() > 5.0
+    assert np.linalg.norm(places - places[0, 0], axis=-1).max() < 3 * 80 + 0.5
 
 
-def test_rod_keeps_a_driving_robot_at_its_distance(sim: pogosim.Simulation) -> None:
-    x, y = sim.objects[0].position
-    sim.link(0, (x + 60.0, y), "rod")
-    sim.step(300)
-    assert math.dist(sim.objects[0].position, (x, y)) > 5.0  # it drives on
-    (rod,) = sim.links
-    assert rod["length_mm"] == pytest.approx(60.0, abs=0.5)
-    assert rod["tension_n"] != 0.0
-
-
-def test_spring_breaks_and_the_data_file_says_when(sim: pogosim.Simulation) -> None:
-    sim.link(0, 1, stiffness=10.0, length=0.0, breaking_force=1e-3)
-    sim.link(1, 2, stiffness=1e-3)
-    sim.step(5)
-    assert sim.links["is_cut"].tolist() == [True, False]
-    assert sim.links["tension_n"][0] == 0.0
-    sim.end()
-    cut = json.loads(sim.to_dataframe().attrs["link_changes"])["cut"]
-    assert cut["link"] == [0]
-    assert 0.0 < cut["time_s"][0] < 6 * sim.time_step
-
-
-def test_run_goes_on_from_a_state_with_its_links(still: pogosim.Simulation) -> None:
-    still.link(0, 1, stiffness=1e-3)
-    still.step(10)
-    saved, before = still.save(), still.links
-    still.cut(0)
-    still.link(0, 2, stiffness=1e-3)
-    still.link(1, PUCK_INDEX, "rod")
-    still.step(10)
-    first = still.state_hash
-    assert still.links["is_cut"].tolist() == [True, False, False]
-    still.restore(saved)
-    np.testing.assert_array_equal(still.links, before)
-    still.cut(0)
-    still.link(0, 2, stiffness=1e-3)
-    still.link(1, PUCK_INDEX, "rod")
-    still.step(10)
-    assert still.state_hash == first
-
-
-def test_state_hash_has_the_links(still: pogosim.Simulation) -> None:
-    without = still.state_hash
-    still.link(0, 1, stiffness=1.0)
-    linked = still.state_hash
-    still.cut(0)
-    assert len({without, linked, still.state_hash}) == 3
-
-
-def test_membrane_cannot_be_linked(hosted: Path, scene: Path) -> None:
-    with pogosim.Simulation(hosted, scene, set={"objects.skin": MEMBRANE}) as sim:
-        (skin,) = sim.objects.of("skin")
-        with pytest.raises(ConfigurationError, match="of category 'skin' is a membrane, which cannot be linked"):
-            sim.link(0, skin, stiffness=1.0)
+@pytest.mark.parametrize("engine", ["disk", "box2d"])
+def test_link_bot_of_the_page_keeps_its_v(engine: str, tmp_path: Path) -> None:
+    rows = moved("link_bot.yaml", tmp_path, engine)
+    turned = np.degrees(np.diff(by_robot(rows, "angle"), axis=1)[:, 0])
+    against_start = (turned - turned[0] + 180.0) % 360.0 - 180.0
+    assert against_start.min() > -15.0 - 3.0
+    assert against_start.max() < 30.0 + 3.0
+    places = np.stack([by_robot(rows, "x"), by_robot(rows, "y")], axis=-1)
+    assert np.linalg.norm(places[:, 1] - places[:, 0], axis=-1).max() < 60.0 + 0.5
+    assert np.linalg.norm(places[-1] - places[0], axis=-1).min() > 20.0

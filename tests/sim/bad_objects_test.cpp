@@ -58,7 +58,7 @@ TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
             type, {{"geometry: disk, radius: 0", ".radius: expected a number from 0.001 to 1000000 (mm), found 0"},
                    {"geometry: disk, radius: -5", ".radius: expected a number from 0.001 to 1000000 (mm), found -5"},
                    {"geometry: disk, body_density: -1",
-                    ".body_density: expected a number from 0 to 1000000000000000 (per (100 mm)^2), found -1"},
+                    ".body_density: expected a number from 0 to 1000000000000000 (kg per (100 mm)^2), found -1"},
                    {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
                    {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
                    {"geometry: disk, x: 4", ".x: x without y; specify both or neither"}});

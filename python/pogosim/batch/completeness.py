@@ -18,7 +18,7 @@ from pogosim.batch.identity import config_hash
 from pogosim.batch.manifests import for_json
 from pogosim.batch.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
-from pogosim.batch.run_files import ALL_OUTPUTS, FILES_BESIDE
+from pogosim.batch.run_files import ALL_OUTPUTS, is_file_beside
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.lines import counted
 from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters
@@ -100,7 +100,7 @@ def compared(entries: Mapping[str, Any]) -> dict[str, Any]:
     """
     kept = {key: value for key, value in entries.items() if key != CHOICES}
     values = {path: for_json(value) for path, value in leaves(kept) if path not in NOT_COMPARED and value != {}}
-    return {path: PurePath(str(value)).name if path in FILES_BESIDE else value for path, value in values.items()}
+    return {path: PurePath(str(value)).name if is_file_beside(path) else value for path, value in values.items()}
 
 
 def warn_of_others(artifacts: Sequence[TaskArtifact], expected: Expected) -> None:

@@ -13,7 +13,16 @@ OUTPUTS_ASKED_FOR = {"message_log": "messages.feather", "flash_state.output_file
 ALL_OUTPUTS = (*OUTPUTS, *OUTPUTS_ASKED_FOR)
 
 FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
-FILES_OF_OBJECTS = ("robot_model", "brain.script", "function_costs")  # of a category
+# The same in entries of maps: categories of objects, and links.
+FILES_OF_ENTRIES = {"objects": ("robot_model", "brain.script", "function_costs"), "links": ("file",)}
+
+
+def is_file_beside(setting: str) -> bool:
+    """Tell whether a setting, a dotted path, is the name of a file that a run reads beside its configuration."""
+    return setting in FILES_BESIDE or any(
+        setting.startswith(f"{key}.") and setting.endswith(tuple(f".{own}" for own in settings))
+        for key, settings in FILES_OF_ENTRIES.items()
+    )
 
 
 def is_nested(setting: str) -> bool:
@@ -72,18 +81,20 @@ def with_files_beside(entries: dict[str, Any], folder: Path) -> dict[str, Any]:
     for setting in FILES_BESIDE:
         if (name := value_at(entries, setting)) is not None:
             entries = changed(entries, setting, found_beside(name, folder))
-    objects = entries.get("objects")
-    return {**entries, "objects": with_object_files(objects, folder)} if isinstance(objects, dict) else entries
+    for key, settings in FILES_OF_ENTRIES.items():
+        if isinstance(described := entries.get(key), dict):
+            entries = {**entries, key: with_own_files(described, settings, folder)}
+    return entries
 
 
-def with_object_files(node: Any, folder: Path) -> Any:
-    """Return categories, or entries of one, with the paths of their files that a single run finds in a folder."""
+def with_own_files(node: Any, settings: Sequence[str], folder: Path) -> Any:
+    """Return categories, links, or entries of one, with the paths of files that a single run finds in a folder."""
     if isinstance(node, list):
-        return [with_object_files(own, folder) for own in node]
+        return [with_own_files(own, settings, folder) for own in node]
     if not isinstance(node, dict):
         return node
-    node = {name: with_object_files(own, folder) for name, own in node.items()}
-    for setting in FILES_OF_OBJECTS:
+    node = {name: with_own_files(own, settings, folder) for name, own in node.items()}
+    for setting in settings:
         if (name := value_at(node, setting)) is not None:
             node = changed(node, setting, found_beside(name, folder))
     return node

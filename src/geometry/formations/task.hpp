@@ -47,6 +47,14 @@ std::vector<Placement> place_disk(PlacementTask const& task);
 /// On a square grid: compact around the centre, or spread over the bounding box.
 std::vector<Placement> place_chessboard(PlacementTask const& task);
 
+/// On the nodes of a triangular or a square lattice: a compact patch around the centre.
+std::vector<Placement> place_lattice(PlacementTask const& task);
+
+constexpr char const* kLatticeSpacingKey = "lattice_distance_between_neighbors";
+
+/// Distance between neighbours of a lattice of objects, the largest of which has this placement radius.
+float lattice_spacing(FormationSpec const& spec, float largest_mm);
+
 /// Evenly spread: the centroidal Voronoi diagram, sampled.
 std::vector<Placement> place_lloyd(PlacementTask const& task);
 
