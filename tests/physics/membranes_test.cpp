@@ -168,6 +168,32 @@ TEST_P(MembranesOfBothKinds, StayInOnePieceWhileRobotsPushFromInside) {
     }
 }
 
+/// Robots that are stretching it, and have stopped.
+TEST_P(MembranesOfBothKinds, CalmDownAroundRobotsThatHoldThemOut) {
+    World world = testing::square_world();
+    Membrane const membrane = add_ring(world, {.dots = 100, .damping_per_s = 0.3F, .segments = segments()});
+    for (int k = 0; k < 6; ++k) {
+        std::uint32_t const robot =
+            testing::add_body(world, Vec2{500, 500} + 90.0F * direction(1.0471976F * static_cast<float>(k)), 0.0F,
+                              testing::pogobot_spec());
+        world.objects.push_back({.id = robot, .body = robot, .body_count = 1});
+    }
+    auto const engine = make_engine(world, {});
+    auto const push = [&](double seconds, float speed_mm_s) {
+        for (int step = 0; step < std::lround(seconds / 0.01); ++step) {
+            for (std::uint32_t robot = membrane.body_count; robot < world.bodies.size(); ++robot) {
+                Vec2 const ahead = direction(1.0471976F * static_cast<float>(robot - membrane.body_count));
+                set_velocity(world.bodies, robot, speed_mm_s * ahead, 0.0F);
+            }
+            engine->advance(world);
+        }
+    };
+    push(1.6, 100.0F);
+    double const pushed = energy(world);
+    push(6.0, 0.0F);
+    EXPECT_LT(energy(world), 0.1 * pushed);
+}
+
 TEST(MembranesOfTheDiskEngine, KeepTheirShapeAcrossTheSeam) {
     for (bool const segments : {false, true}) {
         World world = ring_world({.segments = segments});
