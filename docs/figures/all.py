@@ -30,6 +30,7 @@ try:
     import functions
     import gallery
     import lamps
+    import links
     import loads
     import magnetometer
     import messages
@@ -66,6 +67,7 @@ SCRIPTS: dict[str, ModuleType] = {
         functions,
         gallery,
         lamps,
+        links,
         loads,
         magnetometer,
         messages,

@@ -3,14 +3,15 @@
     .venv/bin/python docs/figures/all.py links
 
 The robots align themselves with their motion, as in P. Baconnier et al., "Selective and collective actuation in active
-solids", Nature Physics 18, 1234 (2022): each turns at the rate (n x du/dt) / l_a, with the direction n of its heading, its
-velocity du/dt and the length l_a. On a spring of stiffness k, a robot of speed v and mobility b moves by
+solids", Nature Physics 18, 1234 (2022): each turns at the rate (n x du/dt) / l_a, with the direction n of its heading,
+its velocity du/dt and the length l_a. On a spring of stiffness k, a robot of speed v and mobility b moves by
 du/dt = v n - b k u, so the elasto-active feedback is pi = v / (l_a b k). A robot whose motors set its velocity at each
 tick T, and which the spring alone moves in between, has the mobility T / (2 m).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from pictures import Picture, from_figure
 from pogosim.swarm_picture import INK, PAPER
-from quotes import Quote
+from quotes import Quote, paragraph
 
 NAMES = ("links.png",)
 Floats = npt.NDArray[np.float64]
@@ -129,7 +130,8 @@ def normal_modes(folder: Path, stiffness_n_m: float) -> pd.DataFrame:
             sim.reset(seed=1)
             shape = mode.reshape(-1, 2)
             for node, shift in zip(free, 0.5 * shape, strict=True):
-                sim.objects[int(node)].move(*(start[node] + shift), 0.0)
+                x_mm, y_mm = start[node] + shift
+                sim.objects[int(node)].move(x_mm, y_mm, 0.0)
             projected = []
             for _ in range(int(3.25 / hz / STEP_S)):
                 projected.append(float(np.sum((places(sim)[free] - start[free]) * shape)))
@@ -164,7 +166,7 @@ ACTIVE: dict[str, Any] = {
     "type": "pogobot",
     "brain": "host",
     "max_linear_speed": 2 * SPEED_MM_S,
-    "max_angular_speed": FASTEST_TURN_RAD_S,
+    "max_angular_speed": FASTEST_TURN_RAD_S / 4,  # both wheels against each other turn it four times as fast
 }
 
 
@@ -213,55 +215,82 @@ def active_solid(folder: Path, feedback: float) -> tuple[float, float, pd.DataFr
                 headings = sim.headings[free]
                 polarisation.append(abs(np.mean(np.exp(1j * headings))))
                 turned.append(np.mean(np.remainder(headings - before + np.pi, 2 * np.pi) - np.pi))
-        nodes = pd.DataFrame(np.hstack([start, sim.positions, sim.headings[:, None]]), columns=["x0", "y0", "x", "y", "a"])
+        nodes = pd.DataFrame(
+            np.hstack([start, sim.positions, sim.headings[:, None]]), columns=["x0", "y0", "x", "y", "a"]
+        )
         nodes["is_free"] = np.isin(np.arange(ROBOTS), free)
     return float(np.mean(polarisation)), float(abs(np.mean(turned)) / TICK_S), nodes
 
 
-FEEDBACKS = (0.7, 0.9, 1.2, 1.5, 2.0, 3.0, 4.0, 6.0)  # pi
-PICTURED = (0.7, 3.0)
+ORBITS = (0.7, 0.9, 1.2, 1.5, 2.0, 3.0, 4.0)  # pi
+SOLIDS = (0.2, 0.3, 0.4, 0.45, 0.5, 0.6, 0.8, 1.0, 1.4)
+PICTURED = (0.3, 1.0)
+GREY, BLUE, RED = "#b8b2a3", "#1f6f8b", "#c0392b"
 
 
 def draw_solid(axes: Axes, nodes: pd.DataFrame, title: str) -> None:
-    """Draw the nodes of a lattice, their headings, and the way from where they are at rest, three times as long."""
-    for node in nodes.itertuples():
-        axes.add_patch(Circle((node.x, node.y), RADIUS_MM, facecolor="#e9e5da", edgecolor="#b8b2a3", linewidth=0.6))
+    """Draw nodes, their headings, and three times their displacements."""
+    for x, y in nodes[["x", "y"]].to_numpy():
+        axes.add_patch(Circle((x, y), RADIUS_MM, facecolor="#e9e5da", edgecolor=GREY, linewidth=0.6))
     free = nodes[nodes["is_free"]]
-    style = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
-    axes.quiver(free["x0"], free["y0"], 3 * (free["x"] - free["x0"]), 3 * (free["y"] - free["y0"]), color="#1f6f8b", **style)
-    axes.quiver(
-        free["x"], free["y"], RADIUS_MM * np.cos(free["a"]), RADIUS_MM * np.sin(free["a"]), color="#c0392b", **style
-    )
+    style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.006}
+    way_x, way_y = 3 * (free["x"] - free["x0"]), 3 * (free["y"] - free["y0"])
+    axes.quiver(free["x0"], free["y0"], way_x, way_y, color=BLUE, **style)
+    ahead_x, ahead_y = RADIUS_MM * np.cos(free["a"]), RADIUS_MM * np.sin(free["a"])
+    axes.quiver(free["x"], free["y"], ahead_x, ahead_y, color=RED, **style)
     axes.set_title(title, color=INK, fontsize=10)
     axes.set_aspect("equal")
-    axes.set_xlim(600, 1400)
-    axes.set_ylim(1400, 600)
+    axes.set_xlim(640, 1360)
+    axes.set_ylim(1360, 640)
     axes.axis("off")
+
+
+def draw_rates(axes: Axes, orbits: Sequence[float], solids: Sequence[float], least: float) -> None:
+    """Draw the rates of turning over the feedback, and below which feedback no solid can begin to turn."""
+    rate = SPEED_MM_S / ALIGNMENT_MM
+    curve = np.linspace(1, max(ORBITS), 200)
+    theory = np.concatenate([[0.0], rate * np.sqrt(curve - 1) / curve])
+    axes.plot([0, *curve], theory, color=GREY, linewidth=1, label="one robot, theory")
+    axes.plot(ORBITS, orbits, "o", color=BLUE, markersize=4, label="one robot")
+    axes.plot(SOLIDS, solids, "s", color=RED, markersize=4, label="active solid")
+    axes.axvline(least, color=RED, linewidth=0.8, linestyle=":", label="none can turn to the left of this")
+    axes.set_xlabel("elasto-active feedback π")
+    axes.set_ylabel("rate of turning, rad/s")
+    axes.legend(frameon=False, fontsize=8)
 
 
 def draw(folder: Path) -> dict[str, Picture | Quote]:
     """Run everything; draw the solids, and theory against what was measured."""
-    modes = normal_modes(folder, 50.0)
-    orbits = pd.DataFrame({"feedback": FEEDBACKS, "rate": [orbit(folder, feedback) for feedback in FEEDBACKS]})
-    solids = {feedback: active_solid(folder, feedback) for feedback in FEEDBACKS}
+    stiffness_n_m = 50.0
+    modes = normal_modes(folder, stiffness_n_m)
+    orbits = [orbit(folder, feedback) for feedback in ORBITS]
+    solids = {feedback: active_solid(folder, feedback) for feedback in SOLIDS}
+    least = float((2 * np.pi * modes["theory"].min()) ** 2 * MASS_KG / stiffness_n_m)
 
-    figure = Figure(figsize=(10, 7.4), facecolor=PAPER, layout="constrained")
+    figure = Figure(figsize=(10, 8), facecolor=PAPER, layout="constrained")
     (frozen, turning), (left, right) = figure.subplots(2, 2)
     for axes, feedback in zip((frozen, turning), PICTURED, strict=True):
-        draw_solid(axes, solids[feedback][2], f"π = {feedback}")
-    left.plot([0, 5], [0, 5], color="#b8b2a3", linewidth=1)
-    left.plot(modes["theory"], modes["simulator"], "o", color="#1f6f8b", markersize=3)
-    left.set_xlabel("frequency by theory, Hz")
+        draw_solid(axes, solids[feedback][2], f"active solid, π = {feedback}")
+    left.plot([0, 2], [0, 2], color=GREY, linewidth=1)
+    left.plot(modes["theory"], modes["simulator"], "o", color=BLUE, markersize=3)
+    left.set_xlabel("frequency of a normal mode by theory, Hz")
     left.set_ylabel("in the simulator, Hz")
-    curve = np.linspace(1, max(FEEDBACKS), 200)
-    rate = SPEED_MM_S / ALIGNMENT_MM
-    right.plot([0, *curve], [0, *(rate * np.sqrt(curve - 1) / curve)], color="#b8b2a3", linewidth=1, label="one robot, theory")
-    right.plot(orbits["feedback"], orbits["rate"], "o", color="#1f6f8b", markersize=4, label="one robot")
-    right.plot(FEEDBACKS, [solids[each][1] for each in FEEDBACKS], "s", color="#c0392b", markersize=4, label="active solid")
-    right.set_xlabel("elasto-active feedback π")
-    right.set_ylabel("rate of turning, rad/s")
-    right.legend(frameon=False)
+    draw_rates(right, orbits, [solids[each][1] for each in SOLIDS], least)
     for axes in (left, right):
         axes.set_facecolor(PAPER)
-    numbers = modes.round(2), orbits.round(1)
-    return {"links.png": from_figure(figure, 80, *numbers)}
+
+    worst = float((modes["simulator"] / modes["theory"] - 1).abs().max())
+    fast = float(np.max([abs(rate / theory_of(pi) - 1) for pi, rate in zip(ORBITS, orbits, strict=True) if pi >= 2]))
+    first = next(pi for pi in SOLIDS if solids[pi][1] > 0.1)
+    still = max(pi for pi in SOLIDS if pi < first)
+    text = (
+        f"The {len(modes)} normal modes differ from theory by at most {100 * worst:.1f} %, and the rates of one robot "
+        f"at π ≥ 2 by at most {100 * fast:.1f} %. The solid rests up to π = {still:g}, and turns from {first:g} on; its "
+        f"lowest mode allows it from {least:.2f}."
+    )
+    return {"links.png": from_figure(figure, 80, modes.round(2)), "links.md: against_theory": paragraph(text)}
+
+
+def theory_of(feedback: float) -> float:
+    """Return the rate at which one robot turns, rad/s."""
+    return float(SPEED_MM_S / ALIGNMENT_MM * np.sqrt(feedback - 1) / feedback)

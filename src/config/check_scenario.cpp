@@ -89,6 +89,8 @@ void check_object_count(Scenario const& scenario) {
     }
     if (robots == 0) {
         refuse_old_keys(scenario);
+    }
+    if (robots == 0 && scenario.links.empty()) {
         log().warn("{}: objects: there are no robots in this configuration; nothing will move",
                    place_of(scenario, "objects").node.where());
     }
