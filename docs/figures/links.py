@@ -285,8 +285,8 @@ def draw(folder: Path) -> dict[str, Picture | Quote]:
     still = max(pi for pi in SOLIDS if pi < first)
     text = (
         f"The {len(modes)} normal modes differ from theory by at most {100 * worst:.1f} %, and the rates of one robot "
-        f"at π ≥ 2 by at most {100 * fast:.1f} %. The solid rests up to π = {still:g}, and turns from {first:g} on; its "
-        f"lowest mode allows it from {least:.2f}."
+        f"at π ≥ 2 by at most {100 * fast:.1f} %. The solid rests up to π = {still:g}, and turns from {first:g} on; "
+        f"its lowest mode allows it from {least:.2f}."
     )
     return {"links.png": from_figure(figure, 80, modes.round(2)), "links.md: against_theory": paragraph(text)}
 

@@ -25,17 +25,19 @@ concept MembraneLine = requires(T line, std::size_t i, Vec2 change) {
 /// Developers Conference, 2011. Lengths in any unit.
 class MembraneArea {
 public:
-    /// Takes the present area as that at rest.
+    /// As stiff as a time step allows: a change of area is undone within a few steps.
+    static constexpr float kStiff = 0.25F;
+
+    /// Takes the present area as that at rest. `swings_per_step`: its stiffness, as a frequency.
     template <MembraneLine Line>
-    explicit MembraneArea(Line const& line) : area_(enclosed(line)) {}
+    explicit MembraneArea(Line const& line, float swings_per_step = kStiff)
+        : area_(enclosed(line)), swings_per_step_(swings_per_step) {}
 
     /// Changes the velocities for a step of `dt_s`.
     template <MembraneLine Line>
     void push(Line const& line, float dt_s) const;
 
 private:
-    // As stiff as the time step allows: a change of area is undone within a few steps.
-    static constexpr float kSwingsPerStep = 0.25F;
     // No push while area and predicted area are within this tolerance: even a push of zero would keep the membrane
     // awake.
     static constexpr float kTolerance = 1e-4F;  // of the area
@@ -59,6 +61,7 @@ private:
     }
 
     float area_;  // at rest
+    float swings_per_step_;
 };
 
 template <MembraneLine Line>
@@ -74,7 +77,7 @@ void MembraneArea::push(Line const& line, float dt_s) const {
     if (inverse_mass <= 0.0F || std::abs(excess) + std::abs(growth) * dt_s < kTolerance * std::abs(area_)) {
         return;
     }
-    float const omega = 2.0F * std::numbers::pi_v<float> * kSwingsPerStep / dt_s;
+    float const omega = 2.0F * std::numbers::pi_v<float> * swings_per_step_ / dt_s;
     float const stiffness = omega * omega / inverse_mass;
     float const damping = 2.0F * omega / inverse_mass;
     float const softness = 1.0F / (dt_s * (damping + dt_s * stiffness));

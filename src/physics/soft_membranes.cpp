@@ -10,6 +10,9 @@ namespace pogosim {
 
 namespace {
 
+// Hinges answer to a push a few sub-steps later, as it has to travel round the membrane.
+constexpr float kSwingsOfHinged = 0.0625F;
+
 /// Bodies of the world.
 struct LineAtRest {
     std::span<Vec2 const> position_mm;
@@ -36,12 +39,13 @@ struct LineOfMovers {
 
 SoftMembranes::SoftMembranes(World const& world) {
     for (Membrane const& membrane : world.membranes) {
-        areas_.emplace_back(
-            LineAtRest{std::span(world.bodies.position_mm).subspan(membrane.body, membrane.body_count)});
         // Joints are in the order of the membranes.
         auto const is_before = [](std::uint32_t body) { return [body](Joint const& joint) { return joint.a < body; }; };
         auto const first = std::ranges::partition_point(world.joints, is_before(membrane.body));
         auto const last = std::ranges::partition_point(world.joints, is_before(membrane.body + membrane.body_count));
+        bool const has_hinges = std::any_of(first, last, [](Joint const& joint) { return joint.length_mm == 0.0F; });
+        areas_.emplace_back(LineAtRest{std::span(world.bodies.position_mm).subspan(membrane.body, membrane.body_count)},
+                            has_hinges ? kSwingsOfHinged : MembraneArea::kStiff);
         joints_.push_back(
             {static_cast<std::uint32_t>(first - world.joints.begin()), static_cast<std::uint32_t>(last - first)});
     }
