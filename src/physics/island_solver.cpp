@@ -438,18 +438,23 @@ bool IslandSolver::limit_speeds(float most_mm_s, float most_rad_s) {
 /// Springs and links before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
     int const passes = hulls_.empty() && links_.empty() ? kMostSoftPasses : kMostHullPasses;
-    float const converged_mm = links_.empty() ? kConvergedMm : kLinksConvergedMm;
+    float links_change_mm_s = 0.0F;
+    bool are_links_solved = links_.empty();
     for (int pass = 0; pass < passes; ++pass) {
         bool const backwards = pass % 2 == 0;
         float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
-        change_mm_s = std::max(change_mm_s, links_.solve(movers_, backwards, pushes));
+        if (!are_links_solved) {
+            links_change_mm_s = links_.solve(movers_, backwards, pushes);
+            // What contacts change later changes the damping of springs by a thousandth of it.
+            are_links_solved = !links_.has_rigid() && h_s * links_change_mm_s <= kLinksConvergedMm;
+        }
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             Contact& contact = contacts_[backwards ? contacts_.size() - 1 - i : i];
             float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
             change_mm_s = std::max(change_mm_s, solve_contact(contact, demanded_mm_s));
         }
         change_mm_s = std::max(change_mm_s, hulls_.solve(movers_, backwards, pushes));
-        if (h_s * change_mm_s <= converged_mm) {
+        if (h_s * change_mm_s <= kConvergedMm && h_s * links_change_mm_s <= kLinksConvergedMm) {
             return;
         }
     }
