@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/narrowed.hpp"
 #include "device/link_edit.hpp"
 #include "device/sensing.hpp"
 #include "device/switched_off.hpp"
@@ -455,9 +456,9 @@ uint32_t pogosim_world_add_link(pogosim_link_t const* link) {
     }
     made.stiffness_n_m = number(__func__, "stiffness_n_m", link->stiffness_n_m);
     made.damping_n_s_m = number(__func__, "damping_n_s_m", link->damping_n_s_m);
-    made.breaking_n = static_cast<float>(link->breaking_n);
-    made.least_rad = static_cast<float>(link->least_rad);
-    made.most_rad = static_cast<float>(link->most_rad);
+    made.breaking_n = pogosim::narrowed(link->breaking_n);
+    made.least_rad = pogosim::narrowed(link->least_rad);
+    made.most_rad = pogosim::narrowed(link->most_rad);
     return with_links(__func__, [&] { return pogosim::add_link(*context.world, made); });
 }
 

@@ -64,7 +64,7 @@ void check_numbers(NewLink const& link) {
     bool const is_hinge = link.kind == LinkKind::hinge;
     check_end("end_a", link.end_a_mm);
     check_end("end_b", link.end_b_mm);
-    check_range("length", link.length_mm.value_or(0.0F), 0.0F, kMostReachMm, "a finite number of at least 0");
+    check_range("length", link.length_mm.value_or(0.0F), 0.0F, kMostReachMm, "a number from 0 to 1e+06");
     check_range("stiffness", link.stiffness_n_m, 0.0F, is_spring ? largest : 0.0F,
                 is_spring ? "a finite number of at least 0" : "0, as only springs have one");
     check_range("damping", link.damping_n_s_m, 0.0F, is_spring ? largest : 0.0F,

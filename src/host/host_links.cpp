@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/narrowed.hpp"
 #include "device/link_edit.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
@@ -44,13 +44,8 @@ LinkKind kind_of(std::int32_t kind) {
     }
 }
 
-/// Beyond the range of a float: infinite, which is refused where it has to be.
-float number(double value) {
-    return static_cast<float>(std::clamp(value, -kInfinite, kInfinite));
-}
-
 Vec2 point(double const (&mm)[2]) {
-    return {number(mm[0]), number(mm[1])};
+    return {narrowed(mm[0]), narrowed(mm[1])};
 }
 
 std::uint32_t object_of(std::int64_t index) {
@@ -125,13 +120,13 @@ int pogosim_run_add_link(pogosim_run* run, pogosim_run_link const* link, size_t*
         made.end_a_mm = point(link->end_a_mm);
         made.end_b_mm = point(link->end_b_mm);
         if (!std::isnan(link->rest_mm)) {
-            made.length_mm = number(link->rest_mm);
+            made.length_mm = narrowed(link->rest_mm);
         }
-        made.stiffness_n_m = number(link->stiffness_n_m);
-        made.damping_n_s_m = number(link->damping_n_s_m);
-        made.breaking_n = number(link->breaking_n);
-        made.least_rad = number(link->least_rad);
-        made.most_rad = number(link->most_rad);
+        made.stiffness_n_m = narrowed(link->stiffness_n_m);
+        made.damping_n_s_m = narrowed(link->damping_n_s_m);
+        made.breaking_n = narrowed(link->breaking_n);
+        made.least_rad = narrowed(link->least_rad);
+        made.most_rad = narrowed(link->most_rad);
         *index = run->simulation().add_link(made);
         return POGOSIM_OK;
     });

@@ -17,11 +17,12 @@ struct Assembly {
     std::vector<std::uint32_t> links;   // that are not cut
 };
 
-/// Impulses of a hinge or link in the last sub-step: the initial guess for the next one.
+/// Impulses of a hinge or link in the last sub-step, which are the initial guess for the next one.
 struct HeldImpulse {
-    Vec2 push;           // of a rod, or of a spring's damping: the first number, along it
-    float least = 0.0F;  // >= 0; of the limits of a hinge
-    float most = 0.0F;   // <= 0
+    Vec2 push;               // of a rod, or of a spring's damping: the first number, along it
+    float least = 0.0F;      // >= 0; of the limits of a hinge
+    float most = 0.0F;       // <= 0
+    float angle_rad = 0.0F;  // of a hinge with limits: how far it is turned
 };
 
 class Assemblies {

@@ -99,8 +99,7 @@ float ContinuousCollision::reach_mm(Bodies const& bodies, std::uint32_t i) const
 }
 
 bool ContinuousCollision::can_stop(Assemblies const& assemblies, std::uint32_t i, std::uint32_t k) const {
-    std::span<std::uint32_t const> const first = assemblies.first_bodies();
-    return first[i] != first[k] && (is_of_membrane_[i] == 0 || is_of_membrane_[k] == 0);
+    return i != k && assemblies.may_collide(i, k) && (is_of_membrane_[i] == 0 || is_of_membrane_[k] == 0);
 }
 
 /// The fraction of its motion that a body can make before it meets another one.

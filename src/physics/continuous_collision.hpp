@@ -19,8 +19,8 @@ public:
     /// Stops bodies where they first touch others on their straight paths from the start to the end of the step; the
     /// impact itself happens in the next step. Tests the paths of the `fast` bodies, and of all bodies that meet one
     /// that has been stopped. Returns the bodies whose motion was shortened; some may be listed twice. Two bodies that
-    /// overlap at the start do not approach further. Bodies of membranes do not stop each other, nor do those that
-    /// links hold together.
+    /// overlap at the start do not approach further. Bodies of membranes do not stop each other, nor do those with a
+    /// hinge between them.
     std::vector<std::uint32_t> const& stop_at_impacts(World& world, Hulls const& hulls, Assemblies const& assemblies,
                                                       std::span<std::uint32_t const> fast);
 

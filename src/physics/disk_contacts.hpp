@@ -25,7 +25,7 @@ struct HullImpulse {
     struct Part {
         float normal = 0.0F;
         float tangent = 0.0F;
-        std::uint32_t features = 0;  // see Touch
+        std::uint32_t features = 0;  // see ManifoldPoint
     };
     std::array<Part, 2> parts;
 };

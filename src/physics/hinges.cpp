@@ -45,10 +45,17 @@ void Hinges::begin_substep(std::span<Mover> movers, Times const& times) {
         float const apart_mm = length(way_mm);
         float const rate = apart_mm * times.push_rate > kFastestPushMmS ? kFastestPushMmS / apart_mm : times.push_rate;
         hinge.joining_mm_s = -rate * way_mm;
-        ends.push(movers, hinge.held->push);
         if (hinge.has_limits()) {
             measure_limits(hinge, movers, times);
-            turn(movers, ends, hinge.held->least + hinge.held->most);
+        }
+    }
+}
+
+void Hinges::push_as_before(std::span<Mover> movers) {
+    for (Hinge& hinge : hinges_) {
+        hinge.ends.push(movers, hinge.held->push);
+        if (hinge.has_limits()) {
+            turn(movers, hinge.ends, hinge.held->least + hinge.held->most);
         }
     }
 }
@@ -57,7 +64,9 @@ void Hinges::measure_limits(Hinge& hinge, std::span<Mover const> movers, Times c
     Mover const& a = movers[hinge.ends.a];
     Mover const& b = movers[hinge.ends.b];
     HingeLimits const& limits = hinge.limits;
-    float const angle_rad = wrap_angle(b.heading_rad - a.heading_rad - limits.rest_rad);
+    // Near the angle of the last sub-step: half a turn to one side is not half a turn to the other.
+    float& angle_rad = hinge.held->angle_rad;
+    angle_rad += wrap_angle(b.heading_rad - a.heading_rad - limits.rest_rad - angle_rad);
     float const inverse_inertia = a.inverse_inertia + b.inverse_inertia;
     hinge.turn_mass = inverse_inertia > 0.0F ? 1.0F / inverse_inertia : 0.0F;
     // Within the limits, they may be reached in this sub-step; beyond, they push back.
@@ -107,7 +116,7 @@ float Hinges::solve(Hinge& hinge, std::span<Mover> movers, bool pushes) {
 
 void Hinges::forget_impulses() {
     for (Hinge& hinge : hinges_) {
-        *hinge.held = {};
+        *hinge.held = {.push = {}, .angle_rad = hinge.held->angle_rad};
     }
 }
 

@@ -28,8 +28,11 @@ public:
     /// `held`: its impulse, which outlives the island.
     void add(LinkEnds const& ends, HingeLimits const& limits, HeldImpulse& held);
 
-    /// Measures the hinges at the start of a sub-step, and pushes as in the last one.
+    /// Measures the hinges at the start of a sub-step.
     void begin_substep(std::span<Mover> movers, Times const& times);
+
+    /// Applies the impulses of the last sub-step.
+    void push_as_before(std::span<Mover> movers);
 
     /// Measures the hinges after the bodies have moved, before velocities are corrected.
     void begin_relaxing(std::span<Mover const> movers);

@@ -11,7 +11,7 @@ namespace {
 
 // A side of `a` stays the reference until one of `b` is further out by this, so that touches keep their features.
 constexpr float kPreferenceMm = 0.01F;
-// Touches that lie closer together than this are one.
+// Manifold that lie closer together than this are one.
 constexpr float kSamePlaceMm = 0.01F;
 
 /// The side of a hull from which another one is furthest away. Without sides: minus infinity.
@@ -73,14 +73,14 @@ struct Sides {
 };
 
 /// A touch at a point of the incident side which is `height_mm` above the reference.
-Touch touch_at(Sides const& sides, Vec2 point_mm, float height_mm, std::uint32_t end) {
+ManifoldPoint touch_at(Sides const& sides, Vec2 point_mm, float height_mm, std::uint32_t end) {
     float const down_mm = 0.5F * (height_mm + sides.incident_radius_mm - sides.reference_radius_mm);
     return {.point_mm = point_mm - down_mm * sides.normal,
             .gap_mm = height_mm - sides.radius_mm(),
             .features = sides.features << 1U | end};
 }
 
-void add(Touches& touches, Touch const& touch, float reach_mm) {
+void add(Manifold& touches, ManifoldPoint const& touch, float reach_mm) {
     bool const is_known =
         touches.count == 1 && squared_length(touches.touch[0].point_mm - touch.point_mm) < kSamePlaceMm * kSamePlaceMm;
     if (touch.gap_mm < reach_mm && !is_known) {
@@ -90,7 +90,7 @@ void add(Touches& touches, Touch const& touch, float reach_mm) {
 
 /// The part of the incident side above the reference; none if it is beside it. The normal of the touches is that of
 /// the sides.
-std::optional<Touches> clipped(Sides const& sides, float reach_mm) {
+std::optional<Manifold> clipped(Sides const& sides, float reach_mm) {
     Vec2 const way_mm = sides.reference.to_mm - sides.reference.from_mm;
     float const length_mm = length(way_mm);
     Vec2 const along = {-sides.normal.y, sides.normal.x};  // the reference runs clockwise
@@ -101,7 +101,7 @@ std::optional<Touches> clipped(Sides const& sides, float reach_mm) {
     if (std::max(from, to) < -kSamePlaceMm || std::min(from, to) > length_mm + kSamePlaceMm) {
         return std::nullopt;
     }
-    Touches touches{.normal = sides.normal};
+    Manifold touches{.normal = sides.normal};
     auto const add_end = [&](float at, std::uint32_t end) {
         float const held = std::clamp(at, 0.0F, length_mm);
         float const share = from == to ? static_cast<float>(end) : std::clamp((held - from) / (to - from), 0.0F, 1.0F);
@@ -153,7 +153,7 @@ float from_corners_mm2(Hull const& corners, Hull const& sides) {
 }
 
 /// The touch of two corners; none if an end of one side is closer to the middle of the other one, or above its end.
-std::optional<Touches> of_corners(Sides sides, float reach_mm) {
+std::optional<Manifold> of_corners(Sides sides, float reach_mm) {
     Closest const closest = closest_ends(sides.reference, sides.incident);
     constexpr float kRounding = 1.0F - 1e-5F;
     float const to_sides_mm2 = std::min(
@@ -166,19 +166,19 @@ std::optional<Touches> of_corners(Sides sides, float reach_mm) {
     }
     float const distance_mm = std::sqrt(closest.distance_mm2);
     sides.normal = (1.0F / distance_mm) * (closest.incident_mm - closest.reference_mm);
-    Touches touches{.normal = sides.normal};
+    Manifold touches{.normal = sides.normal};
     add(touches, touch_at(sides, closest.incident_mm, distance_mm, 0), reach_mm);
     return touches;
 }
 
 /// `is_apart`: the polygons do not overlap.
-Touches touches_between(Sides const& sides, bool is_apart, float reach_mm) {
+Manifold touches_between(Sides const& sides, bool is_apart, float reach_mm) {
     if (is_apart) {
-        if (std::optional<Touches> const corners = of_corners(sides, reach_mm)) {
+        if (std::optional<Manifold> const corners = of_corners(sides, reach_mm)) {
             return *corners;
         }
     }
-    if (std::optional<Touches> const faces = clipped(sides, reach_mm)) {
+    if (std::optional<Manifold> const faces = clipped(sides, reach_mm)) {
         return *faces;
     }
     return {};
@@ -190,11 +190,11 @@ bool pushes_from_corner(WallSide const& side, Vec2 normal) {
 }
 
 /// The touch of a wall's corner with the inside of a hull's side or with one of its corners.
-Touches touches_with_corner(Hull const& hull, WallSide const& side, float reach_mm) {
+Manifold touches_with_corner(Hull const& hull, WallSide const& side, float reach_mm) {
     Hull corner{.count = 1};
     corner.corner_mm[0] = side.from_mm;
-    Touches const touches = touches_of(hull, corner, reach_mm);
-    return pushes_from_corner(side, touches.normal) ? touches : Touches{};
+    Manifold const touches = touches_of(hull, corner, reach_mm);
+    return pushes_from_corner(side, touches.normal) ? touches : Manifold{};
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead) {
     return result;
 }
 
-Touches touches_of(Hull const& a, Hull const& b, float reach_mm) {
+Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
     assert(a.count > 1 || b.count > 1);
     Furthest const from_a = furthest_from_side(a, b);
     Furthest const from_b = furthest_from_side(b, a);
@@ -229,14 +229,14 @@ Touches touches_of(Hull const& a, Hull const& b, float reach_mm) {
                       .reference_radius_mm = reference.radius_mm,
                       .incident_radius_mm = incident.radius_mm,
                       .features = (is_of_a ? 1U : 0U) | furthest.side << 1U | against << 4U};
-    Touches touches = touches_between(sides, furthest.distance_mm > 0.0F, reach_mm);
+    Manifold touches = touches_between(sides, furthest.distance_mm > 0.0F, reach_mm);
     if (is_of_a) {
         touches.normal = -touches.normal;
     }
     return touches;
 }
 
-Touches touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm) {
+Manifold touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm) {
     Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
     float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
     Furthest const from_hull = [&] {
@@ -259,10 +259,10 @@ Touches touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, flo
                       .reference_radius_mm = 0.0F,
                       .incident_radius_mm = hull.radius_mm,
                       .features = against};
-    if (std::optional<Touches> const faces = clipped(sides, reach_mm)) {
+    if (std::optional<Manifold> const faces = clipped(sides, reach_mm)) {
         return *faces;
     }
-    return side.has_corner ? touches_with_corner(hull, side, reach_mm) : Touches{};
+    return side.has_corner ? touches_with_corner(hull, side, reach_mm) : Manifold{};
 }
 
 float gap_between_mm(Hull const& a, Hull const& b) {

@@ -26,26 +26,26 @@ struct Hull {
 Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead);
 
 /// A point in which two hulls touch, or come near.
-struct Touch {
+struct ManifoldPoint {
     Vec2 point_mm;               // in the middle of the gap
     float gap_mm = 0.0F;         // negative: they overlap by so much
     std::uint32_t features = 0;  // names the corners and sides that meet; the same from step to step
 };
 
-struct Touches {
+struct Manifold {
     Vec2 normal;  // unit vector from `b` to `a`
-    std::array<Touch, 2> touch{};
+    std::array<ManifoldPoint, 2> touch{};
     std::uint32_t count = 0;
 };
 
 /// The touches of two hulls, not both of which are disks, with gaps of less than `reach_mm`: two where sides face each
 /// other, otherwise one. The axis of least overlap: S. Gottschalk, "Separating axis theorem" (1996); sides are clipped
 /// as in E. Catto, "Contact manifolds", Game Developers Conference 2007.
-Touches touches_of(Hull const& a, Hull const& b, float reach_mm);
+Manifold touches_of(Hull const& a, Hull const& b, float reach_mm);
 
 /// The touches of a hull with an edge of a wall. `centre_mm`: of the hull. A hull whose centre is behind the edge does
 /// not touch it, see gap_to().
-Touches touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm);
+Manifold touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm);
 
 /// The distance between two hulls, not both of which are disks; negative when they overlap: by how much at least.
 float gap_between_mm(Hull const& a, Hull const& b);

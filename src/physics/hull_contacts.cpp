@@ -7,7 +7,7 @@ namespace pogosim {
 
 namespace {
 
-// Touches are sought within this distance, and what the bodies can close in a sub-step.
+// Manifold are sought within this distance, and what the bodies can close in a sub-step.
 constexpr float kTouchReachMm = 1.0F;
 
 Vec2 tangent_of(Vec2 normal) {
@@ -60,7 +60,7 @@ void HullContacts::add(World const& world, DiskContacts const& contacts, std::ui
     contacts_.push_back(contact);
 }
 
-Touches HullContacts::touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const {
+Manifold HullContacts::touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const {
     Placed const& a = hulls_[contact.hull_a];
     if (contact.hull_b == kNone) {
         return touches_with(a.now, a.place_mm, contacts.wall_side(contact.index), reach_mm);
@@ -92,7 +92,7 @@ bool HullContacts::measure(DiskContacts const& contacts, std::span<Mover const> 
     return overlaps;
 }
 
-bool HullContacts::measure(Contact& contact, Touches const& touches, std::span<Mover const> movers,
+bool HullContacts::measure(Contact& contact, Manifold const& touches, std::span<Mover const> movers,
                            Times const& times) const {
     Mover const& a = movers[contact.a];
     Mover const& b = movers[contact.b];
@@ -100,7 +100,7 @@ bool HullContacts::measure(Contact& contact, Touches const& touches, std::span<M
     contact.count = touches.count;
     bool overlaps = false;
     for (std::uint32_t i = 0; i < touches.count; ++i) {
-        Touch const& touch = touches.touch[i];
+        ManifoldPoint const& touch = touches.touch[i];
         Point& point = contact.points[i];
         Vec2 const b_mm = contact.hull_b == kNone ? Vec2{} : hulls_[contact.hull_b].place_mm - contact.seam_mm;
         point = {.arm_a_mm = touch.point_mm - hulls_[contact.hull_a].place_mm,

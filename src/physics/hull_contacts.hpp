@@ -74,8 +74,8 @@ private:
 
     std::uint32_t hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body, std::uint32_t mover,
                           std::span<Mover const> movers);
-    Touches touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const;
-    bool measure(Contact& contact, Touches const& touches, std::span<Mover const> movers, Times const& times) const;
+    Manifold touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const;
+    bool measure(Contact& contact, Manifold const& touches, std::span<Mover const> movers, Times const& times) const;
     static float solve(Contact const& contact, Point& point, std::span<Mover> movers, bool pushes);
 
     std::vector<Contact> contacts_;

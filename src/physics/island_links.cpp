@@ -71,6 +71,11 @@ void IslandLinks::begin_substep(std::span<Mover> movers, Times const& times) {
     hinges_.begin_substep(movers, times);
 }
 
+void IslandLinks::push_as_before(std::span<Mover> movers) {
+    springs_and_rods_.push_as_before(movers);
+    hinges_.push_as_before(movers);
+}
+
 void IslandLinks::begin_relaxing(std::span<Mover const> movers) {
     springs_and_rods_.begin_relaxing(movers);
     hinges_.begin_relaxing(movers);

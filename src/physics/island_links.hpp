@@ -25,11 +25,14 @@ public:
 
     float fastest_swing_rad_s() const { return springs_and_rods_.fastest_swing_rad_s(); }
 
-    /// Whether some are rigid: what is wrong with these is corrected in each sub-step, and that speed taken back.
+    /// Whether there are rods or hinges. Each sub-step corrects where their bodies are, and then their velocities.
     bool has_rigid() const { return springs_and_rods_.has_rods() || !hinges_.empty(); }
 
-    /// Measures all at the start of a sub-step, lets springs pull and the others push as in the last one.
+    /// Measures all at the start of a sub-step, and lets springs pull.
     void begin_substep(std::span<Mover> movers, Times const& times);
+
+    /// Applies the impulses of the last sub-step.
+    void push_as_before(std::span<Mover> movers);
 
     /// Measures what is rigid after the bodies have moved, before velocities are corrected.
     void begin_relaxing(std::span<Mover const> movers);

@@ -32,6 +32,9 @@ constexpr float kMostTurnRad = 0.1F;
 // What springs swing by at most in a sub-step, rad, as long as there are not too many.
 constexpr float kMostSwingRad = 0.5F;
 
+// Links that have added more energy than this, in parts of what there was, have pushed against contacts in vain.
+constexpr double kMuchEnergy = 1.01;
+
 // Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
 
@@ -93,8 +96,8 @@ void IslandSolver::gather(World const& world, Assemblies& assemblies, DiskContac
         }
         links_.add(world, assemblies, assembly, movers_, mover_);
     }
-    for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
-        std::uint32_t const index = islands.links()[link].contact;
+    for (std::uint32_t link = island.first; link != kNone; link = islands.contacts()[link].next) {
+        std::uint32_t const index = islands.contacts()[link].contact;
         NearContact const& near = contacts.near()[index];
         bool const is_pair = contacts.is_pair(index);
         std::uint32_t const a = mover_of(world, contacts, near.a);
@@ -380,20 +383,21 @@ Vec2 IslandSolver::drift_mm_s() const {
     return (1.0F / mass) * sum;
 }
 
-/// Takes back what links and contacts have added that push against each other in vain, such as a chain that is tied
-/// into a knot.
-void IslandSolver::limit_energy(double most) {
+/// Takes back the energy that links and contacts have added which push against each other in vain, as in a chain that
+/// is tied into a knot. Returns whether it was much.
+bool IslandSolver::limit_energy(double most) {
     Vec2 const drift = drift_mm_s();
     double const inner = kinetic_energy(drift);
     double const outer = kinetic_energy({}) - inner;
     if (outer + inner <= most || inner == 0.0) {
-        return;
+        return false;
     }
     auto const share = static_cast<float>(std::sqrt(std::max(most - outer, 0.0) / inner));
     for (Mover& mover : std::span(movers_).subspan(1)) {
         mover.velocity_mm_s = drift + share * (mover.velocity_mm_s - drift);
         mover.angular_velocity_rad_s *= share;
     }
+    return outer + inner > kMuchEnergy * most;
 }
 
 /// With turning that matters, the speed of a corner.
@@ -473,22 +477,24 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool i
     auto const dt_s = static_cast<float>(world.time_step_s);
     int const substeps = substeps_of(dt_s);
     // Springs of links may throw as far as they can.
-    float const most_mm_s = links_.fastest_swing_rad_s() > 0.0F && membranes_.empty()
+    float const most_mm_s = membranes_.empty() && !links_.empty()
                                 ? kUnlimited
                                 : std::min(kMostThrown * std::max(fastest_mm_s(), kFastestPushMmS),
                                            static_cast<float>(kMostSubsteps) * most_motion_mm_ / dt_s);
     float const most_rad_s = turns_matter() ? static_cast<float>(kMostSubsteps) * kMostTurnRad / dt_s : kUnlimited;
-    // Then nothing adds energy, but walls that do more than give it back.
-    bool const only_rigid = links_.has_rigid() && links_.fastest_swing_rad_s() == 0.0F && membranes_.empty() &&
-                            std::ranges::all_of(contacts_, [](Contact const& c) { return c.law.restitution <= 1.0F; });
+    // Once springs have pulled, only walls with a restitution above 1 can add energy.
+    bool const keeps_energy =
+        links_.has_rigid() && membranes_.empty() &&
+        std::ranges::all_of(contacts_, [](Contact const& contact) { return contact.law.restitution <= 1.0F; });
     float const h_s = dt_s / static_cast<float>(substeps);
     Times times{.h_s = h_s, .rest_s = 0.0F, .per_h = 1.0F / h_s, .push_rate = push_rate(h_s)};
     bool overlaps = false;
     for (int substep = 0; substep < substeps; ++substep) {
         times.rest_s = static_cast<float>(substeps - substep) * h_s;
-        double const most_energy = only_rigid ? kinetic_energy({}) : 0.0;
         bool const is_too_long = membranes_.begin_substep(movers_, h_s, times.push_rate);
         links_.begin_substep(movers_, times);
+        double const most_energy = keeps_energy ? kinetic_energy({}) : 0.0;
+        links_.push_as_before(movers_);
         overlaps = measure(world, contacts, times).overlaps;
         overlaps = hulls_.measure(contacts, movers_, times) || overlaps;
         if (is_driven && substep == 0) {
@@ -507,10 +513,11 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool i
             links_.begin_relaxing(movers_);
             solve_velocities_softly(h_s, /*pushes=*/false);
         }
-        if (only_rigid) {
-            limit_energy(most_energy);
-        }
+        bool const has_added = keeps_energy && limit_energy(most_energy);
         links_.end_substep();
+        if (has_added) {
+            links_.forget_impulses();
+        }
     }
     return overlaps;
 }

@@ -89,7 +89,7 @@ private:
     void keep_impulses(std::vector<float>& driven_impulse) const;
     double kinetic_energy(Vec2 drift_mm_s) const;
     Vec2 drift_mm_s() const;
-    void limit_energy(double most);
+    bool limit_energy(double most);
     void mark(Contact& contact);
     void mark_overlaps();
     void solve_velocities(float h_s, bool pushes);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::uint32_t kLeastRange = 2048;  // contacts
 
-/// A turning disk moves nothing but a link that is attached to its rim. A link that pulls will move its bodies.
+/// Disks of membranes may turn without moving anything; a turn of what a link or hinge holds moves the others. So does
+/// a link that pulls.
 bool is_moving(World const& world, Assembly const& assembly) {
     Bodies const& bodies = world.bodies;
     bool const can_turn = !assembly.hinges.empty() || !assembly.links.empty();
@@ -103,11 +104,11 @@ void Islands::find_hulls(World const& world, DiskContacts const& contacts, Reach
     }
 }
 
-/// Turns the close contacts into links, and joins the trees of their bodies.
+/// Lists the close contacts, and joins the trees of their bodies.
 void Islands::unite(DiskContacts const& contacts) {
     for (std::vector<Close> const& found : close_) {
         for (Close const& close : found) {
-            links_.push_back({.contact = close.contact, .next = kNone});
+            contacts_.push_back({.contact = close.contact, .next = kNone});
             meets_.push_back(close.meets ? 1 : 0);
             if (contacts.is_pair(close.contact)) {
                 std::uint32_t const root_a = root_of(contacts.near()[close.contact].a);
@@ -121,15 +122,15 @@ void Islands::unite(DiskContacts const& contacts) {
 /// Appends each contact to the list of its island.
 void Islands::link(DiskContacts const& contacts) {
     islands_.clear();
-    for (std::uint32_t i = 0; i < links_.size(); ++i) {
-        std::uint32_t const body = contacts.near()[links_[i].contact].a;
+    for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+        std::uint32_t const body = contacts.near()[contacts_[i].contact].a;
         std::uint32_t const root = root_of(body);
         parent_[body] = root;
         if (island_[root] == kNone) {
             island_[root] = static_cast<std::uint32_t>(islands_.size());
             islands_.push_back({.first = i});
         } else {
-            links_[islands_[island_[root]].last].next = i;
+            contacts_[islands_[island_[root]].last].next = i;
         }
         Island& island = islands_[island_[root]];
         island.last = i;
@@ -159,11 +160,11 @@ void Islands::link_assemblies(World const& world, Assemblies const& assemblies, 
 }
 
 void Islands::mark_bodies(DiskContacts const& contacts) {
-    for (std::uint32_t i = 0; i < links_.size(); ++i) {
-        NearContact const& near = contacts.near()[links_[i].contact];
+    for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+        NearContact const& near = contacts.near()[contacts_[i].contact];
         if (islands_[island_[parent_[near.a]]].is_active) {
             has_contact_[near.a] = 1;
-            if (contacts.is_pair(links_[i].contact)) {
+            if (contacts.is_pair(contacts_[i].contact)) {
                 has_contact_[near.b] = 1;
             }
         }
@@ -185,7 +186,7 @@ void Islands::find(World const& world, Assemblies const& assemblies, DiskContact
     parent_ = assemblies.first_bodies();
     island_.assign(parent_.size(), kNone);
     has_contact_.assign(parent_.size(), 0);
-    links_.clear();
+    contacts_.clear();
     meets_.clear();
     auto const count = static_cast<std::uint32_t>(contacts.near().size());
     close_.resize(workers.range_count(count, kLeastRange));

@@ -14,7 +14,7 @@
 
 namespace pogosim {
 
-/// Contacts of one island: a list in Islands::links(). Its assemblies: a list in Islands::next_assemblies().
+/// Contacts of one island: a list in Islands::contacts(). Its assemblies: a list in Islands::next_assemblies().
 struct Island {
     std::uint32_t first = kNone;  // kNone: no contacts, only a moving assembly
     std::uint32_t last = kNone;
@@ -23,9 +23,9 @@ struct Island {
     bool is_active = false;  // bodies touch within this step, or an assembly moves
 };
 
-struct IslandLink {
+struct IslandContact {
     std::uint32_t contact;  // into DiskContacts::near()
-    std::uint32_t next;     // into Islands::links(); kNone: the last one
+    std::uint32_t next;     // into Islands::contacts(); kNone: the last one
 };
 
 struct Reach {
@@ -42,7 +42,7 @@ public:
     /// Sorted by their first contacts; islands that are a single assembly come last. The contacts of each are in the
     /// order of DiskContacts::near().
     std::span<Island const> islands() const { return islands_; }
-    std::span<IslandLink const> links() const { return links_; }
+    std::span<IslandContact const> contacts() const { return contacts_; }
 
     /// For each assembly, the next one in the same island; kNone: it is the last one.
     std::span<std::uint32_t const> next_assemblies() const { return next_assembly_; }
@@ -74,7 +74,7 @@ private:
     std::vector<std::uint32_t> island_;  // for each root; kNone: none
     std::vector<std::uint8_t> has_contact_;
     std::vector<std::vector<Close>> close_;  // for each range of contacts, during the search
-    std::vector<IslandLink> links_;          // in the order of DiskContacts::near()
+    std::vector<IslandContact> contacts_;    // in the order of DiskContacts::near()
     std::vector<std::uint8_t> meets_;        // for each link: its bodies touch within this step
     std::vector<std::uint32_t> next_assembly_;
     std::vector<Island> islands_;

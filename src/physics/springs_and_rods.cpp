@@ -54,10 +54,8 @@ float SpringsAndRods::place(Held& link, std::span<Mover const> movers) {
     link.ends.place(movers);
     Vec2 const way_mm = link.ends.way_mm(movers);
     float const now_mm = length(way_mm);
-    // Ends that coincide keep the direction they had.
-    if (now_mm > 0.0F) {
-        link.along = (1.0F / now_mm) * way_mm;
-    }
+    // Ends that coincide part along x, as centres of disks do.
+    link.along = now_mm > 0.0F ? (1.0F / now_mm) * way_mm : Vec2{1.0F, 0.0F};
     link.mass = 1.0F / link.ends.inverse_mass(movers, link.along);
     if (link.is_rod()) {
         link.soft_mass = link.mass;
@@ -79,6 +77,11 @@ void SpringsAndRods::begin_substep(std::span<Mover> movers, Times const& times) 
             link.pull = times.h_s * link.stiffness * excess_mm;
             link.ends.push(movers, -link.pull * link.along);
         }
+    }
+}
+
+void SpringsAndRods::push_as_before(std::span<Mover> movers) {
+    for (Held& link : links_) {
         link.ends.push(movers, link.held->push.x * link.along);
     }
 }

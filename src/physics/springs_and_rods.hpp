@@ -1,10 +1,10 @@
 // The links of an island that act along the line between their ends: springs and rods.
 //
-// The pull of a spring is taken at the start of a sub-step, which keeps the energy of an undamped one (symplectic
-// Euler: E. Hairer, C. Lubich and G. Wanner, "Geometric numerical integration", 2006); its damping, and the pull of a
-// spring that is too stiff for the shortest sub-steps, are those at its end, which is stable at every strength. Rods
-// and hinges are corrected in each sub-step, and velocities are then made to agree with where they are, as in "RATTLE":
-// H. C. Andersen, Journal of Computational Physics 52 (1983) 24.
+// A spring pulls with the force at the start of a sub-step, which keeps the energy of an undamped one (symplectic Euler:
+// E. Hairer, C. Lubich and G. Wanner, "Geometric numerical integration", 2006). Its damping is that at the end, which is
+// stable however strong it is; so is the force of a spring that is too stiff for the shortest sub-steps. Rods and hinges
+// are corrected in each sub-step, and velocities are then made to agree with where they are, as in "RATTLE": H. C.
+// Andersen, Journal of Computational Physics 52 (1983) 24.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,11 @@ public:
     /// At most the fastest oscillation of what is linked, rad/s: by Gershgorin's circle theorem.
     float fastest_swing_rad_s() const;
 
-    /// Measures the links at the start of a sub-step, lets springs pull and rods push as in the last one.
+    /// Measures the links at the start of a sub-step, and lets springs pull.
     void begin_substep(std::span<Mover> movers, Times const& times);
+
+    /// Applies the impulses of the last sub-step.
+    void push_as_before(std::span<Mover> movers);
 
     /// Measures the rods after the bodies have moved, before velocities are corrected.
     void begin_relaxing(std::span<Mover const> movers);

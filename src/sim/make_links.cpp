@@ -384,9 +384,8 @@ private:
             link.breaking_n = *config_.breaking_force_n;
         }
         // From centre to centre, or to the place.
-        Vec2 const apart = pair.b
-                               ? minimum_image(world_, world_.bodies.position_mm[a], world_.bodies.position_mm[link.b])
-                               : pair.place_mm - world_.bodies.position_mm[a];
+        Vec2 const to_mm = pair.b ? world_.bodies.position_mm[link.b] : pair.place_mm;
+        Vec2 const apart = minimum_image(world_, world_.bodies.position_mm[a], to_mm);
         if (config_.kind == LinkKind::hinge) {
             set_hinge(link, pair, apart);
             return link;

@@ -177,7 +177,7 @@ TEST(LinkEdit, RefusesNumbersOutOfRange) {
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.breaking_n = 0.0F; }),
               "breaking force: expected a number above 0, found 0");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.length_mm = -2.0F; }),
-              "length: expected a finite number of at least 0, found -2");
+              "length: expected a number from 0 to 1e+06, found -2");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.end_a_mm.y = kNan; }),
               "end_a: expected finite numbers up to 1e+06, found (0, nan)");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.most_rad = 1.0F; }), "limits: only hinges have some");

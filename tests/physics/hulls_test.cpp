@@ -88,7 +88,7 @@ TEST(Hull, TouchesOthersWhereTheirOutlinesAreNearest) {
         Vec2 const place_mm = random.uniform(0.0F, 150.0F) * direction(random.uniform(-kPi, kPi));
         Hull const b = hull_at(any_shape(random, true), place_mm, random.uniform(-kPi, kPi));
         float const gap_mm = gap_between_mm(a, b);
-        Touches const touches = touches_of(a, b, 1000.0F);
+        Manifold const touches = touches_of(a, b, 1000.0F);
         ASSERT_GE(touches.count, 1U);
         ASSERT_NEAR(length(touches.normal), 1.0F, 1e-4F);
         float nearest_mm = touches.touch[0].gap_mm;
@@ -112,8 +112,8 @@ TEST(Hull, TouchesAreTheSameTheOtherWayRound) {
         Hull const a = hull_at(any_shape(random, false), {}, random.uniform(-kPi, kPi));
         Vec2 const place_mm = random.uniform(0.0F, 150.0F) * direction(random.uniform(-kPi, kPi));
         Hull const b = hull_at(any_shape(random, false), place_mm, random.uniform(-kPi, kPi));
-        Touches const one = touches_of(a, b, 1000.0F);
-        Touches const other = touches_of(b, a, 1000.0F);
+        Manifold const one = touches_of(a, b, 1000.0F);
+        Manifold const other = touches_of(b, a, 1000.0F);
         if (length(one.normal + other.normal) < 1e-3F) {  // else both axes are as good
             EXPECT_EQ(one.count, other.count) << i;
         }
@@ -122,10 +122,10 @@ TEST(Hull, TouchesAreTheSameTheOtherWayRound) {
 
 TEST(Hull, HasTwoTouchesWhereSidesFaceEachOther) {
     Hull const box = hull_at(rectangle(40.0F, 20.0F), {}, 0.0F);
-    Touches const flat = touches_of(box, hull_at(rectangle(30.0F, 20.0F), {5.0F, 21.0F}, 0.0F), 5.0F);
+    Manifold const flat = touches_of(box, hull_at(rectangle(30.0F, 20.0F), {5.0F, 21.0F}, 0.0F), 5.0F);
     ASSERT_EQ(flat.count, 2U);
     EXPECT_EQ(flat.normal, (Vec2{0.0F, -1.0F}));
-    for (Touch const& touch : flat.touch) {
+    for (ManifoldPoint const& touch : flat.touch) {
         EXPECT_FLOAT_EQ(touch.gap_mm, 1.0F);
         EXPECT_FLOAT_EQ(touch.point_mm.y, 10.5F);
     }

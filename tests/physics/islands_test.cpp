@@ -39,8 +39,8 @@ struct Finder {
 
     Group bodies_of(Island const& island) const {
         Group bodies;
-        for (std::uint32_t link = island.first; link != kNone; link = islands.links()[link].next) {
-            std::uint32_t const contact = islands.links()[link].contact;
+        for (std::uint32_t link = island.first; link != kNone; link = islands.contacts()[link].next) {
+            std::uint32_t const contact = islands.contacts()[link].contact;
             bodies.insert(contacts.near()[contact].a);
             if (contact < contacts.pair_count()) {
                 bodies.insert(contacts.near()[contact].b);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "physics/physics_engine.hpp"
@@ -332,6 +334,104 @@ TEST_P(Links, BreakWhenTheForceIsMoreThanTheyBear) {
     }
 }
 
+TEST_P(Links, BreakWhenTheyArePushedTooHard) {
+    World world = square_world();
+    add_disk(world, {400, 500});
+    add_disk(world, {500, 500});
+    world.links = {spring(0, 1, 121.0F, 50.0F)};  // -1.05 N when it is shortest
+    world.links[0].breaking_n = 0.9F;
+    run(world, 2.0);
+    EXPECT_TRUE(world.links[0].is_cut);
+}
+
+/// Against a fixed box that is turned, counted from a rest angle that is not 0.
+TEST_P(Links, LimitsCountFromTheAngleAtRest) {
+    for (float const spin_rad_s : {2.0F, -2.0F}) {
+        World world = square_world();
+        add_box(world, {550, 500}, 100.0F, 20.0F);
+        add_box(world, {450, 500}, 60.0F, 20.0F);
+        world.bodies.spec[1].fixed = true;
+        world.bodies.heading_rad[1] = 2.5F;
+        world.bodies.heading_dir[1] = direction(2.5F);
+        Link elbow = hinge(0, {-50, 0}, 1, rotate({50, 0}, direction(-2.5F)));
+        elbow.rest_rad = 2.5F;
+        elbow.least_rad = -0.6F;
+        elbow.most_rad = 0.3F;
+        world.links = {elbow};
+        world.bodies.angular_velocity_rad_s[0] = spin_rad_s;
+        world.bodies.velocity_mm_s[0] = {0, 50.0F * spin_rad_s};
+        auto const engine = make_engine(world, {});
+        float reached_rad = 0.0F;
+        for (int i = 0; i < 200; ++i) {
+            engine->advance(world);
+            float const angle_rad = -world.bodies.heading_rad[0];  // of the fixed one against it, from rest
+            reached_rad = std::abs(angle_rad) > std::abs(reached_rad) ? angle_rad : reached_rad;
+        }
+        EXPECT_NEAR(reached_rad, spin_rad_s > 0.0F ? -0.6F : 0.3F, is_ours() ? 0.01F : 0.05F);
+    }
+}
+
+TEST(LinksOfTheDiskEngine, LimitsOfHalfATurnHoldOnBothSides) {
+    for (auto const& [least_deg, most_deg, spin_rad_s] :
+         {std::tuple(-180.0F, 30.0F, 3.0F), std::tuple(-30.0F, 180.0F, -3.0F), std::tuple(-180.0F, 180.0F, 3.0F)}) {
+        World world = square_world();
+        add_box(world, {500, 500}, 100.0F, 20.0F);
+        world.links = {hinge(0, {}, kNone, {500, 500})};
+        world.links[0].least_rad = least_deg * kPi / 180.0F;
+        world.links[0].most_rad = most_deg * kPi / 180.0F;
+        world.bodies.angular_velocity_rad_s = {spin_rad_s};
+        auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+        float turned_rad = 0.0F;
+        for (int i = 0; i < 800; ++i) {
+            float const before_rad = world.bodies.heading_rad[0];
+            engine->advance(world);
+            turned_rad += wrap_angle(world.bodies.heading_rad[0] - before_rad);
+        }
+        // The arena has turned the other way against it.
+        EXPECT_NEAR(-turned_rad, spin_rad_s > 0.0F ? world.links[0].least_rad : world.links[0].most_rad, 0.01F);
+    }
+}
+
+TEST_P(Links, WhatOnlyTurnsAboutAHingeTurnsOn) {
+    World world = square_world();
+    add_disk(world, {500, 500});
+    world.links = {hinge(0, {}, kNone, {500, 500})};
+    world.bodies.angular_velocity_rad_s = {1.0F};
+    run(world, 2.0);
+    EXPECT_NEAR(world.bodies.heading_rad[0], 2.0F, 0.01F);
+}
+
+/// Its frequency is five times that of the same spring at the centre, for which alone there would be too few sub-steps.
+TEST(LinksOfTheDiskEngine, StiffSpringAtALongArmKeepsItsEnergy) {
+    World world = square_world();
+    add_box(world, {500, 500}, 200.0F, 4.0F);
+    Link pull = spring_to({600, 560}, 0, 50.0F, 3000.0F);
+    pull.end_a_mm = {100, 0};
+    world.links = {hinge(0, {}, kNone, {500, 500}), pull};
+    auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+    float most_late_rad = 0.0F;
+    float most_early_rad = 0.0F;
+    for (int i = 0; i < 3000; ++i) {
+        engine->advance(world);
+        float const away_rad = std::abs(world.bodies.heading_rad[0]);
+        most_early_rad = i < 300 ? std::max(most_early_rad, away_rad) : most_early_rad;
+        most_late_rad = i >= 2700 ? std::max(most_late_rad, away_rad) : 0.0F;
+    }
+    EXPECT_GT(most_early_rad, 0.1F);
+    EXPECT_NEAR(most_late_rad / most_early_rad, 1.0F, 0.05F);
+}
+
+TEST(LinksOfTheDiskEngine, SpringWhoseEndsCoincidePushesThemApart) {
+    World world = square_world();
+    add_disk(world, {500, 500});
+    world.links = {spring_to({500, 500}, 0, 50.0F, 50.0F)};
+    auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+    for (int i = 0; i < 50; ++i) {
+        engine->advance(world);
+    }
+    EXPECT_GT(length(world.bodies.position_mm[0] - Vec2{500, 500}), 5.0F);
+}
+
 TEST_P(Links, MadeAndCutDuringARunTakeEffectAtTheNextStep) {
     World world = square_world();
     add_disk(world, {400, 500});
@@ -450,7 +550,9 @@ float widest_hinge_mm(World const& world) {
         return world.bodies.position_mm[body] + rotate(own_mm, direction(world.bodies.heading_rad[body]));
     };
     for (Link const& link : world.links) {
-        widest_mm = std::max(widest_mm, length(end_mm(link.a, link.end_a_mm) - end_mm(link.b, link.end_b_mm)));
+        if (link.kind == LinkKind::hinge) {
+            widest_mm = std::max(widest_mm, length(end_mm(link.a, link.end_a_mm) - end_mm(link.b, link.end_b_mm)));
+        }
     }
     return widest_mm;
 }
@@ -479,10 +581,55 @@ TEST(LinksOfTheDiskEngine, FoldingChainLosesEnergyOnlyWhenItsBoxesMeet) {
     EXPECT_LT(energy_of_boxes(world), 0.3 * first);  // the outer boxes met, with a restitution of 0.5
 }
 
+/// Robots that drive and turn at each second step, until the chain is folded and its robots press against each other.
+TEST(LinksOfTheDiskEngine, DrivenChainStaysWholeAndSlow) {
+    for (std::uint32_t const count : {5U, 20U}) {
+        for (bool const has_spring : {false, true}) {
+            World world = square_world(3000.0F);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                add_disk(world, {600.0F + 60.0F * static_cast<float>(i), 1500});
+                if (i > 0) {
+                    world.links.push_back(hinge(i - 1, {30, 0}, i, {-30, 0}));
+                }
+            }
+            if (has_spring) {
+                world.links.push_back(spring(0, count - 1, 60.0F * static_cast<float>(count - 1), 1e-6F));
+            }
+            auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+            for (int step = 0; step < 3000; ++step) {
+                for (std::uint32_t i = 0; i < count && step % 2 == 0; ++i) {
+                    Vec2 const ahead = direction(world.bodies.heading_rad[i]);
+                    set_velocity(world.bodies, i, 60.0F * ahead, i % 3 == 0 ? 1.0F : -0.5F);
+                }
+                engine->advance(world);
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    ASSERT_LT(length(world.bodies.position_mm[i] - world.bodies.start_mm[i]), 3.0F) << step;
+                }
+                ASSERT_LT(widest_hinge_mm(world), 1.0F) << step;
+            }
+        }
+    }
+}
+
+TEST(LinksOfTheDiskEngine, LetThroughNoLinkedDiskHoweverFast) {
+    World world = square_world(4000.0F);
+    add_disk(world, {1777, 2000});
+    add_disk(world, {2233, 2000});
+    world.bodies.velocity_mm_s = {{15000, 0}, {-15000, 0}};
+    world.links = {spring(0, 1, 456.0F, 0.001F)};
+    auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+    for (int i = 0; i < 20; ++i) {
+        engine->advance(world);
+        ASSERT_GT(world.bodies.position_mm[1].x - world.bodies.position_mm[0].x, 2.0F * kRadiusMm - 1.0F);
+    }
+}
+
 /// Boxes that are thrown about tie it into knots, in which links and contacts push against each other.
 TEST(LinksOfTheDiskEngine, ClosedChainOfHingesGainsNoEnergyHoweverItIsThrown) {
     constexpr std::uint32_t count = 40;
-    for (float const speed_mm_s : {50.0F, 500.0F, 3000.0F}) {
+    for (auto const& [speed_mm_s, stiffness_n_m] :
+         {std::pair(50.0F, 0.0F), std::pair(500.0F, 0.0F), std::pair(3000.0F, 0.0F), std::pair(100.0F, 1e-6F),
+          std::pair(400.0F, 30.0F)}) {
         World world = square_world(4000.0F);
         auto const corner_mm = [&](std::uint32_t k) {
             return Vec2{2000, 2000} + 200.0F * direction(2.0F * kPi * static_cast<float>(k) / count);
@@ -495,13 +642,16 @@ TEST(LinksOfTheDiskEngine, ClosedChainOfHingesGainsNoEnergyHoweverItIsThrown) {
             world.bodies.velocity_mm_s[k] = speed_mm_s * direction(1.7F * static_cast<float>(k * k % 17));
             world.links.push_back(hinge(k, {0.5F * side_mm, 0}, (k + 1) % count, {-0.5F * side_mm, 0}));
         }
+        if (stiffness_n_m > 0.0F) {
+            world.links.push_back(spring(0, count / 2, 400.0F, stiffness_n_m));  // nearly as long as it is
+        }
         double const first = energy_of_boxes(world);
         auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
         for (int i = 0; i < 500; ++i) {
             engine->advance(world);
             ASSERT_LT(energy_of_boxes(world), 1.01 * first) << speed_mm_s << " mm/s, step " << i;
         }
-        EXPECT_LT(widest_hinge_mm(world), 0.1F) << speed_mm_s;
+        EXPECT_LT(widest_hinge_mm(world), 0.5F) << speed_mm_s;
     }
 }
 

@@ -299,6 +299,17 @@ TEST(MakeLinks, FixedPlacesMayBeInAFile) {
               "links.csv:2: a: expected the number of an object, 0 to 3, found 9");
 }
 
+TEST(MakeLinks, FixedPlacesMayBeAcrossTheSeam) {
+    Built const built =
+        build(fmt::format("boundary_condition: periodic\n"
+                          "objects:\n  robots: {{type: pogobot, geometry: disk, radius: {}, poses: [[40, "
+                          "500]]}}\nlinks:\n  it: {{between: robots, topology: fixed, file: links.csv}}\n",
+                          kRadius),
+              "a,x,y\n0,1960,500\n");
+    ASSERT_EQ(built.error, "no error");
+    EXPECT_NEAR(built.links().at(0).length_mm, 80.0F, kTolerance);
+}
+
 TEST(MakeLinks, RimIsThePointOfTheOutlineTowardsTheOtherEnd) {
     Built const disks =
         robots_at("[[100, 500, 0.7], [200, 500, -2]]", "{between: robots, topology: chain, attach: rim}");
