@@ -58,7 +58,7 @@ void check_end(char const* name, Vec2 end_mm) {
 }
 
 void check_numbers(NewLink const& link) {
-    constexpr float largest = std::numeric_limits<float>::max();
+    constexpr float largest = 1e9F;
     constexpr float infinite = std::numeric_limits<float>::infinity();
     bool const is_spring = link.kind == LinkKind::spring;
     bool const is_hinge = link.kind == LinkKind::hinge;
@@ -66,9 +66,9 @@ void check_numbers(NewLink const& link) {
     check_end("end_b", link.end_b_mm);
     check_range("length", link.length_mm.value_or(0.0F), 0.0F, kMostReachMm, "a number from 0 to 1e+06");
     check_range("stiffness", link.stiffness_n_m, 0.0F, is_spring ? largest : 0.0F,
-                is_spring ? "a finite number of at least 0" : "0, as only springs have one");
+                is_spring ? "a number from 0 to 1e+09" : "0, as only springs have one");
     check_range("damping", link.damping_n_s_m, 0.0F, is_spring ? largest : 0.0F,
-                is_spring ? "a finite number of at least 0" : "0, as only springs have one");
+                is_spring ? "a number from 0 to 1e+09" : "0, as only springs have one");
     if (is_spring && link.stiffness_n_m == 0.0F && link.damping_n_s_m == 0.0F) {
         throw ConfigError("stiffness: a spring without stiffness and damping would do nothing");
     }

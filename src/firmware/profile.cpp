@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/json_text.hpp"
 
 namespace pogosim {
 
@@ -28,21 +29,6 @@ constexpr std::size_t kMostFrames = 4'000;  // deeper calls count for their call
 
 bool is_store(Operation operation) {
     return operation == Operation::sb || operation == Operation::sh || operation == Operation::sw;
-}
-
-std::string json_text(std::string_view text) {
-    std::string result = "\"";
-    for (char const character : text) {
-        if (character == '"' || character == '\\') {
-            result += '\\';
-            result += character;
-        } else if (static_cast<unsigned char>(character) < ' ') {
-            result += fmt::format("\\u{:04x}", static_cast<unsigned>(character));
-        } else {
-            result += character;
-        }
-    }
-    return result + '"';
 }
 
 /// The elements of a list, each as text_of() says, on lines of their own.

@@ -24,6 +24,9 @@ public:
              std::span<std::uint32_t const> mover_of);
 
     float fastest_swing_rad_s() const { return springs_and_rods_.fastest_swing_rad_s(); }
+    float fastest_turn_rad_s(std::span<Mover const> movers) const {
+        return springs_and_rods_.fastest_turn_rad_s(movers);
+    }
 
     /// Whether there are rods or hinges. Each sub-step corrects where their bodies are, and then their velocities.
     bool has_rigid() const { return springs_and_rods_.has_rods() || !hinges_.empty(); }

@@ -123,10 +123,18 @@ void IslandSolver::gather(World const& world, Assemblies& assemblies, DiskContac
     movers_[kStill].blocks = 0;
 }
 
-void IslandSolver::scatter(World& world) const {
+/// Where numbers have become too large for a float, the body stays where it was, at rest.
+void IslandSolver::scatter(World& world) {
     Bodies& bodies = world.bodies;
     for (std::size_t i = 1; i < movers_.size(); ++i) {
         Mover const& mover = movers_[i];
+        if (!is_finite(mover.position_mm + mover.velocity_mm_s) ||
+            !std::isfinite(mover.heading_rad + mover.angular_velocity_rad_s)) {
+            bodies.velocity_mm_s[mover.body] = {};
+            bodies.angular_velocity_rad_s[mover.body] = 0.0F;
+            links_.forget_impulses();
+            continue;
+        }
         bodies.position_mm[mover.body] = mover.position_mm;
         bodies.velocity_mm_s[mover.body] = mover.velocity_mm_s;
         bodies.heading_rad[mover.body] = mover.heading_rad;
@@ -468,6 +476,7 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
 int IslandSolver::substeps_of(float dt_s) const {
     float const needed =
         std::ceil(std::max({fastest_mm_s() * dt_s / most_motion_mm_, fastest_turn_rad_s() * dt_s / kMostTurnRad,
+                            links_.fastest_turn_rad_s(movers_) * dt_s / kMostTurnRad,
                             links_.fastest_swing_rad_s() * dt_s / kMostSwingRad}));
     return static_cast<int>(std::clamp(needed, static_cast<float>(kSubsteps), static_cast<float>(kMostSubsteps)));
 }

@@ -79,7 +79,7 @@ private:
     std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
     void gather(World const& world, Assemblies& assemblies, DiskContacts const& contacts, Islands const& islands,
                 Island const& island);
-    void scatter(World& world) const;
+    void scatter(World& world);
     Survey measure(World const& world, DiskContacts const& contacts, Times const& times);
     Places find_places(World const& world, DiskContacts const& contacts, std::span<Contact const> four,
                        std::uint32_t first) const;

@@ -13,6 +13,8 @@ namespace {
 constexpr float kRigid = std::numeric_limits<float>::infinity();
 // A spring that swings by more than this in a sub-step, rad, pulls as at its end. Symplectic Euler is stable below 2.
 constexpr float kMostSwingRad = 1.0F;
+// Shorter rods count as this long when it comes to how fast they turn.
+constexpr float kShortestMm = 0.1F;
 
 }  // namespace
 
@@ -45,6 +47,17 @@ void SpringsAndRods::add(Link const& link, LinkEnds const& ends, HeldImpulse& he
     }
 }
 
+float SpringsAndRods::fastest_turn_rad_s(std::span<Mover const> movers) const {
+    float fastest_rad_s = 0.0F;
+    for (Held const& link : links_) {
+        if (link.is_rod()) {
+            float const speed_mm_s = length(link.ends.parting_mm_s(movers));
+            fastest_rad_s = std::max(fastest_rad_s, speed_mm_s / std::max(link.length_mm, kShortestMm));
+        }
+    }
+    return fastest_rad_s;
+}
+
 float SpringsAndRods::fastest_swing_rad_s() const {
     return stiffness_of_mover_.empty() ? 0.0F : std::sqrt(2.0F * std::ranges::max(stiffness_of_mover_));
 }
@@ -71,10 +84,12 @@ void SpringsAndRods::begin_substep(std::span<Mover> movers, Times const& times) 
         if (link.is_rod()) {
             link.correcting_mm_s = -std::clamp(times.push_rate * excess_mm, -kFastestPushMmS, kFastestPushMmS);
         } else {
-            float const drag = times.h_s * (link.damping + (is_too_stiff ? times.h_s * link.stiffness : 0.0F));
+            float const resistance = link.damping + (is_too_stiff ? times.h_s * link.stiffness : 0.0F);
+            float const drag = times.h_s * resistance;
             link.softness = drag > 0.0F ? 1.0F / drag : 0.0F;
-            link.soft_mass = drag > 0.0F ? drag * link.mass / (drag + link.mass) : 0.0F;
-            link.pull = times.h_s * link.stiffness * excess_mm;
+            link.soft_mass = drag > 0.0F ? link.mass / (1.0F + link.mass * link.softness) : 0.0F;
+            link.correcting_mm_s = is_too_stiff ? -link.stiffness / resistance * excess_mm : 0.0F;
+            link.pull = is_too_stiff ? 0.0F : times.h_s * link.stiffness * excess_mm;
             link.ends.push(movers, -link.pull * link.along);
         }
     }
@@ -99,7 +114,7 @@ float SpringsAndRods::solve(Held& link, std::span<Mover> movers, bool pushes) {
         return 0.0F;
     }
     float const speed_mm_s = dot(link.ends.parting_mm_s(movers), link.along);
-    float const wanted_mm_s = pushes ? link.correcting_mm_s : 0.0F;
+    float const wanted_mm_s = pushes || !link.is_rod() ? link.correcting_mm_s : 0.0F;
     float const push = link.soft_mass * (wanted_mm_s - speed_mm_s - link.softness * link.held->push.x);
     link.held->push.x += push;
     link.ends.push(movers, push * link.along);

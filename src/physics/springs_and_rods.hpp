@@ -28,6 +28,9 @@ public:
     /// `held`: its impulse, which outlives the island.
     void add(Link const& link, LinkEnds const& ends, HeldImpulse& held, std::span<Mover const> movers);
 
+    /// At most how fast a rod turns.
+    float fastest_turn_rad_s(std::span<Mover const> movers) const;
+
     /// At most the fastest oscillation of what is linked, rad/s: by Gershgorin's circle theorem.
     float fastest_swing_rad_s() const;
 
@@ -60,7 +63,7 @@ private:
         float mass = 0.0F;
         float soft_mass = 0.0F;
         float softness = 0.0F;         // speed left per impulse; of a rod: 0
-        float correcting_mm_s = 0.0F;  // speed at which a rod gets its length
+        float correcting_mm_s = 0.0F;  // speed at which a rod, or a spring that is too stiff, gets its length
         float pull = 0.0F;             // impulse of a spring that was applied at the start
 
         bool is_rod() const;

@@ -7,27 +7,13 @@
 #include <iterator>
 #include <string_view>
 
+#include "base/json_text.hpp"
 #include "base/rounded_time.hpp"
 #include "device/link_edit.hpp"
 
 namespace pogosim {
 
 namespace {
-
-std::string json_text(std::string_view text) {
-    std::string json = "\"";
-    for (char const c : text) {
-        if (c == '"' || c == '\\') {
-            json += '\\';
-            json += c;
-        } else if (static_cast<unsigned char>(c) < ' ') {
-            json += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        } else {
-            json += c;
-        }
-    }
-    return json + '"';
-}
 
 std::string number(double value) {
     return std::isfinite(value) ? fmt::format("{}", value) : "null";

@@ -31,6 +31,8 @@ constexpr float kSpacingTolerance = 0.01F;
 
 // A rod needs a direction.
 constexpr float kShortestRodMm = 1.0e-3F;
+// One that fits its ends less would throw them.
+constexpr float kMostMisfitMm = 1.0F;
 
 /// An object that may be linked.
 struct Member {
@@ -408,6 +410,10 @@ private:
             link.damping_n_s_m = config_.damping_n_s_m;
         } else if (link.length_mm < kShortestRodMm) {
             fail(place("type"), fmt::format("the rod of {} would have no length; use a hinge", named(pair)));
+        } else if (std::abs(link.length_mm - at_start_mm) > kMostMisfitMm) {
+            fail(place(pair.length_mm ? "file" : "rest_length"),
+                 fmt::format("the rod of {} is to be {:g} mm long, but its ends are {:g} mm apart at the start",
+                             named(pair), link.length_mm, at_start_mm));
         }
         return link;
     }

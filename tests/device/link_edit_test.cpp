@@ -167,13 +167,13 @@ std::string refusal_of(LinkKind kind, std::function<void(NewLink& link)> const& 
 TEST(LinkEdit, RefusesNumbersOutOfRange) {
     auto const spring = LinkKind::spring;
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.stiffness_n_m = -1.0F; }),
-              "stiffness: expected a finite number of at least 0, found -1");
+              "stiffness: expected a number from 0 to 1e+09, found -1");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.stiffness_n_m = 0.0F; }),
               "stiffness: a spring without stiffness and damping would do nothing");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.stiffness_n_m = kInfinite; }),
-              "stiffness: expected a finite number of at least 0, found inf");
+              "stiffness: expected a number from 0 to 1e+09, found inf");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.damping_n_s_m = kNan; }),
-              "damping: expected a finite number of at least 0, found nan");
+              "damping: expected a number from 0 to 1e+09, found nan");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.breaking_n = 0.0F; }),
               "breaking force: expected a number above 0, found 0");
     EXPECT_EQ(refusal_of(spring, [](NewLink& link) { link.length_mm = -2.0F; }),

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.hpp"
 #include "physics/physics_engine.hpp"
 #include "support/each_engine.hpp"
 #include "support/shapes.hpp"
@@ -621,6 +622,61 @@ TEST(LinksOfTheDiskEngine, LetThroughNoLinkedDiskHoweverFast) {
     for (int i = 0; i < 20; ++i) {
         engine->advance(world);
         ASSERT_GT(world.bodies.position_mm[1].x - world.bodies.position_mm[0].x, 2.0F * kRadiusMm - 1.0F);
+    }
+}
+
+/// Two robots that drive and turn, held by a rod so short that it turns by much in a step.
+TEST(LinksOfTheDiskEngine, ShortRodFromRimToRimHolds) {
+    for (float const gap_mm : {0.6F, 3.0F, 27.0F}) {
+        World world = square_world();
+        add_disk(world, {450, 500});
+        add_disk(world, {450.0F + 2.0F * kRadiusMm + gap_mm, 500});
+        Link link = rod(0, 1, gap_mm);
+        link.end_a_mm = {kRadiusMm, 0};
+        link.end_b_mm = {-kRadiusMm, 0};
+        world.links = {link};
+        RandomStream random(11, 0);
+        auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+        for (int step = 0; step < 3000; ++step) {
+            for (std::uint32_t i = 0; i < 2 && step % 2 == 0; ++i) {
+                float const turn_rad_s = step % 100 < 30 ? 2.0F : 0.0F;
+                set_velocity(world.bodies, i, 100.0F * direction(world.bodies.heading_rad[i]),
+                             random.uniform(0.5F, 1.0F) * turn_rad_s);
+            }
+            engine->advance(world);
+            auto const end_mm = [&](std::uint32_t body, Vec2 own_mm) {
+                return world.bodies.position_mm[body] + rotate(own_mm, direction(world.bodies.heading_rad[body]));
+            };
+            ASSERT_NEAR(length(end_mm(1, link.end_b_mm) - end_mm(0, link.end_a_mm)), gap_mm, 1.0F) << step;
+            ASSERT_LT(length(world.bodies.position_mm[0] - world.bodies.start_mm[0]), 3.0F) << step;
+        }
+    }
+}
+
+/// Forces that no float can hold, on bodies as light as they may be.
+TEST(LinksOfTheDiskEngine, StiffestSpringsOnLightestBodiesStayFinite) {
+    for (float const stiffness_n_m : {1e5F, 1e9F, 1e30F}) {
+        for (bool const boxes : {false, true}) {
+            World world = square_world();
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                Vec2 const place_mm{300.0F + 100.0F * static_cast<float>(i), 500};
+                boxes ? add_box(world, place_mm, 80.0F, 60.0F) : add_disk(world, place_mm);
+                world.bodies.spec[i].density = i == 1 ? 10.0F : 1e-3F;
+                if (i > 0) {
+                    world.links.push_back(spring(i - 1, i, 100.0F, stiffness_n_m, i == 2 ? 1e30F : 0.0F));
+                }
+            }
+            add_disk(world, {450, 400});
+            auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
+            for (int step = 0; step < 1000; ++step) {
+                set_velocity(world.bodies, 4, 100.0F * direction(0.01F * static_cast<float>(step)), 0.0F);
+                engine->advance(world);
+                for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+                    ASSERT_TRUE(is_finite(world.bodies.position_mm[i])) << step;
+                    ASSERT_LT(length(world.bodies.position_mm[i] - world.bodies.start_mm[i]), 20.0F) << step;
+                }
+            }
+        }
     }
 }
 

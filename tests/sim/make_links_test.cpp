@@ -299,6 +299,22 @@ TEST(MakeLinks, FixedPlacesMayBeInAFile) {
               "links.csv:2: a: expected the number of an object, 0 to 3, found 9");
 }
 
+TEST(MakeLinks, RodThatDoesNotFitIsRefused) {
+    EXPECT_EQ(
+        robots_at("[[100, 500], [160, 500]]", "{type: rod, between: robots, topology: chain, rest_length: 60.5}").error,
+        "no error");
+    EXPECT_EQ(
+        robots_at("[[100, 500], [160, 500]]", "{type: rod, between: robots, topology: chain, rest_length: 90}").error,
+        "x.yaml:7: links.it.rest_length: the rod of robots 0 and robots 1 is to be 90 mm long, but its ends are 60 "
+        "mm apart at the start");
+    EXPECT_EQ(
+        robots_at("[[100, 500], [160, 500]]", "{type: rod, between: robots, topology: list, file: links.csv}",
+                  "a,b,length\n0,1,70\n")
+            .error,
+        "x.yaml:7: links.it.file: the rod of robots 0 and robots 1 is to be 70 mm long, but its ends are 60 mm apart "
+        "at the start");
+}
+
 TEST(MakeLinks, FixedPlacesMayBeAcrossTheSeam) {
     Built const built =
         build(fmt::format("boundary_condition: periodic\n"

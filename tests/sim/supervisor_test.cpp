@@ -388,7 +388,7 @@ TEST(Supervisor, RefusedCallsEndTheRunWithOneMessage) {
                   link.stiffness_n_m = -1.0;
                   pogosim_world_add_link(&link);
               },
-              "pogosim_world_add_link(): stiffness: expected a finite number of at least 0, found -1"},
+              "pogosim_world_add_link(): stiffness: expected a number from 0 to 1e+09, found -1"},
              {[] {
                   pogosim_link_t link = pogosim_world_new_link(POGOSIM_ROD, 0, 1);
                   link.a_x_mm = NAN;
