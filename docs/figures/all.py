@@ -30,7 +30,7 @@ try:
     import functions
     import gallery
     import lamps
-    import links
+    import linked
     import loads
     import magnetometer
     import messages
@@ -67,7 +67,7 @@ SCRIPTS: dict[str, ModuleType] = {
         functions,
         gallery,
         lamps,
-        links,
+        linked,
         loads,
         magnetometer,
         messages,

@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kMostGapMm = 1.0F;  // by which a rod or hinge may miss its ends
 constexpr float kMostReachMm = 1e6F;
+constexpr float kMostLimitRad = 6.2832F;
 
 /// The body that a link may hold.
 std::uint32_t body_to_link(World const& world, std::uint32_t object) {
@@ -80,6 +81,11 @@ void check_numbers(NewLink const& link) {
     }
     check_range("least angle", link.least_rad, -infinite, 0.0F, "a number of at most 0");
     check_range("greatest angle", link.most_rad, 0.0F, infinite, "a number of at least 0");
+    for (float const limit_rad : {link.least_rad, link.most_rad}) {
+        if (std::isfinite(limit_rad) && std::abs(limit_rad) > kMostLimitRad) {
+            throw ConfigError(fmt::format("limits: expected angles in rad, up to 2 pi, found {:g}", limit_rad));
+        }
+    }
 }
 
 /// The length at rest of a link whose ends are so far apart now.

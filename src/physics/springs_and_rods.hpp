@@ -1,10 +1,10 @@
 // The links of an island that act along the line between their ends: springs and rods.
 //
-// A spring pulls with the force at the start of a sub-step, which keeps the energy of an undamped one (symplectic Euler:
-// E. Hairer, C. Lubich and G. Wanner, "Geometric numerical integration", 2006). Its damping is that at the end, which is
-// stable however strong it is; so is the force of a spring that is too stiff for the shortest sub-steps. Rods and hinges
-// are corrected in each sub-step, and velocities are then made to agree with where they are, as in "RATTLE": H. C.
-// Andersen, Journal of Computational Physics 52 (1983) 24.
+// A spring pulls with the force at the start of a sub-step, which keeps the energy of an undamped one (symplectic
+// Euler: E. Hairer, C. Lubich and G. Wanner, "Geometric numerical integration", 2006). Its damping is that at the end,
+// which is stable however strong it is; so is the force of a spring that is too stiff for the shortest sub-steps. Rods
+// and hinges are corrected in each sub-step, and velocities are then made to agree with where they are, as in "RATTLE":
+// H. C. Andersen, Journal of Computational Physics 52 (1983) 24.
 #pragma once
 
 #include <cstdint>

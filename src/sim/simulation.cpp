@@ -436,7 +436,9 @@ std::optional<UserFailure> Simulation::step() {
     stages_.end(Stage::robots);
     channel_.deliver(world_, recorder_.deliveries(), &workers_);
     stages_.end(Stage::messages);
+    broken_links_.note(world_);
     physics_->advance(world_);
+    broken_links_.tell(world_);
     if (observed_motions_) {
         observed_motions_->update(world_);
     }

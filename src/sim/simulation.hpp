@@ -26,6 +26,7 @@
 #include "process/program_image.hpp"
 #include "robot/controllers.hpp"
 #include "robot/native_program.hpp"
+#include "sim/broken_links.hpp"
 #include "sim/flash_state.hpp"
 #include "sim/inspector.hpp"
 #include "sim/observed_motions.hpp"
@@ -260,6 +261,7 @@ private:
     Brains brains_;
     NativeProgram* program_ = nullptr;  // one of them
     std::unique_ptr<PhysicsEngine> physics_;
+    BrokenLinks broken_links_;
     SavedColumns saved_columns_;
     Recorder recorder_;
     std::unique_ptr<Pictures> pictures_;  // null: none are wanted

@@ -194,8 +194,9 @@ def test_all_mistakes_are_told_at_once_each_with_its_line(tmp_path: Path) -> Non
         ({"save_video_period": 1, "frames_name": "f{:.0f}.jpg"}, "frames_name"),
         (
             {
-                "physics_engine": "disk",
-                "objects.rings": {"type": "rectmembrane", "nb": 1, "geometry": "disk", "radius": 100},
+                "physics_engine": "box2d",
+                "boundary_condition": "periodic",
+                "links": {"chain": {"between": "robots", "topology": "chain"}},
             },
             "physics_engine",
         ),

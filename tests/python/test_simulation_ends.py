@@ -298,6 +298,9 @@ ARGUMENTS: dict[str, Any] = {
     "file": "/dev/null",
     "category": "robots",
     "state": None,
+    "a": 0,
+    "b": 1,
+    "links": [],
 }
 
 

@@ -35,6 +35,10 @@ ARGUMENTS: dict[str, Any] = {
     "category": "robots",
     "file": "copy.feather",
     "state": None,
+    "a": 0,
+    "b": 1,
+    "kind": "rod",
+    "links": [],
 }
 
 

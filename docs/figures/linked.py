@@ -1,6 +1,6 @@
 """Links against theory: normal modes of a passive lattice, a robot on a spring, and an active solid.
 
-    .venv/bin/python docs/figures/all.py links
+    .venv/bin/python docs/figures/all.py linked
 
 The robots align themselves with their motion, as in P. Baconnier et al., "Selective and collective actuation in active
 solids", Nature Physics 18, 1234 (2022): each turns at the rate (n x du/dt) / l_a, with the direction n of its heading,
@@ -27,7 +27,7 @@ from pictures import Picture, from_figure
 from pogosim.swarm_picture import INK, PAPER
 from quotes import Quote, paragraph
 
-NAMES = ("links.png",)
+NAMES = ("links.png", "links.md: against_theory")
 Floats = npt.NDArray[np.float64]
 
 SPACING_MM = 80.0
