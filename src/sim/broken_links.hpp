@@ -10,7 +10,7 @@ namespace pogosim {
 
 class BrokenLinks {
 public:
-    /// Before the engine's step: what is cut now was cut by somebody.
+    /// Before the step of the engine: what is cut now was cut by a program or a host.
     void note(World const& world);
 
     /// After it: what has been cut in it has broken. Logs the first link of each category that does.

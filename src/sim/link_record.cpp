@@ -63,8 +63,7 @@ std::string links_from(World const& world, std::size_t first) {
         }
     }
     std::ranges::sort(objects);
-    auto const repeated = std::ranges::unique(objects);
-    objects.erase(repeated.begin(), repeated.end());
+    objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
     auto const place = [&](std::uint32_t body) {
         return body == kNone ? -1 : std::ranges::lower_bound(objects, object_of[body]) - objects.begin();
     };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -25,7 +24,6 @@ using testing::pogobot_spec;
 using testing::square_world;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kUnlimited = std::numeric_limits<float>::infinity();
 constexpr float kRadiusMm = 26.5F;
 
 class Links : public testing::EachEngine {

@@ -147,7 +147,7 @@ TEST_P(MembranesOfBothKinds, StayInOnePieceWhileRobotsPushFromInside) {
     for (int step = 0; step < 1500; ++step) {
         for (std::uint32_t robot = membrane.body_count; robot < world.bodies.size(); ++robot) {
             if (step % 50 == 0) {
-                world.bodies.heading_rad[robot] = random.uniform(-3.0F, 3.0F);
+                set_pose(world.bodies, robot, world.bodies.position_mm[robot], random.uniform(-3.0F, 3.0F));
             }
             set_velocity(world.bodies, robot, 80.0F * direction(world.bodies.heading_rad[robot]), 0.0F);
         }
