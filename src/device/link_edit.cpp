@@ -136,13 +136,9 @@ NewLink link_between(World const& world, LinkKind kind, std::uint32_t a, std::ui
         link.end_b_mm = wrapped(world, bodies.position_mm[body_a]);
     } else if (kind == LinkKind::hinge) {
         std::uint32_t const body_b = world.objects[b].body;
-        auto const in_frame = [&](Vec2 offset_mm, std::uint32_t body) {
-            Vec2 const axis = bodies.heading_dir[body];
-            return rotate(offset_mm, {axis.x, -axis.y});
-        };
         Vec2 const half = 0.5F * minimum_image(world, bodies.position_mm[body_a], bodies.position_mm[body_b]);
-        link.end_a_mm = in_frame(half, body_a);
-        link.end_b_mm = in_frame(-half, body_b);
+        link.end_a_mm = in_frame_of(bodies, body_a, half);
+        link.end_b_mm = in_frame_of(bodies, body_b, -half);
     }
     return link;
 }

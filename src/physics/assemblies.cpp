@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "physics/disjoint_sets.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -35,20 +37,6 @@ bool Assemblies::may_collide(std::uint32_t a, std::uint32_t b) const {
     return hinged_.empty() || !std::ranges::binary_search(hinged_, pair_of(a, b));
 }
 
-std::uint32_t Assemblies::root_of(std::uint32_t body) {
-    while (first_body_[body] != body) {
-        body = first_body_[body] = first_body_[first_body_[body]];
-    }
-    return body;
-}
-
-/// The root of a tree is its first body.
-void Assemblies::unite(std::uint32_t a, std::uint32_t b) {
-    std::uint32_t const root_a = root_of(a);
-    std::uint32_t const root_b = root_of(b);
-    first_body_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-}
-
 Assembly& Assemblies::of(std::uint32_t body) {
     std::uint32_t& place = place_[first_body_[body]];
     if (place == kNone) {
@@ -67,7 +55,7 @@ void Assemblies::find(World const& world) {
     std::vector<std::uint8_t> is_held(count, 0);
     for (Membrane const& membrane : world.membranes) {
         for (std::uint32_t i = membrane.body; i < membrane.body + membrane.body_count; ++i) {
-            unite(membrane.body, i);
+            unite(first_body_, membrane.body, i);
             is_held[i] = 1;
         }
     }
@@ -82,7 +70,7 @@ void Assemblies::find(World const& world) {
             }
         }
         if (is_movable(link.a) && is_movable(link.b)) {
-            unite(link.a, link.b);
+            unite(first_body_, link.a, link.b);
         }
         if (link.kind == LinkKind::hinge && link.b != kNone) {
             hinged_.push_back(pair_of(link.a, link.b));
@@ -93,7 +81,7 @@ void Assemblies::find(World const& world) {
     assemblies_.clear();
     place_.assign(count, kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
-        first_body_[i] = root_of(i);
+        first_body_[i] = root_of(first_body_, i);
         if (is_held[i] != 0) {
             of(i).bodies.push_back(i);
         }

@@ -46,8 +46,6 @@ public:
 
 private:
     void find(World const& world);
-    std::uint32_t root_of(std::uint32_t body);
-    void unite(std::uint32_t a, std::uint32_t b);
     Assembly& of(std::uint32_t body);
 
     std::vector<Assembly> assemblies_;

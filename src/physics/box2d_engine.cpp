@@ -470,12 +470,17 @@ private:
         return ground_;
     }
 
+    template <class Definition>
+    void attach(Definition& joint, Link const& link) {
+        joint.bodyA = end_of(link.a);
+        joint.bodyB = end_of(link.b);
+        joint.localAnchorA = to_box2d(link.end_a_mm);
+        joint.localAnchorB = to_box2d(link.end_b_mm);
+    }
+
     b2Joint* add_hinge(Link const& link) {
         b2RevoluteJointDef hinge;
-        hinge.bodyA = end_of(link.a);
-        hinge.bodyB = end_of(link.b);
-        hinge.localAnchorA = to_box2d(link.end_a_mm);
-        hinge.localAnchorB = to_box2d(link.end_b_mm);
+        attach(hinge, link);
         hinge.referenceAngle = link.rest_rad;
         hinge.enableLimit = std::isfinite(link.least_rad) || std::isfinite(link.most_rad);
         hinge.lowerAngle = std::max(link.least_rad, -b2_maxFloat);
@@ -485,10 +490,7 @@ private:
 
     b2Joint* add_distance(Link const& link) {
         b2DistanceJointDef line;
-        line.bodyA = end_of(link.a);
-        line.bodyB = end_of(link.b);
-        line.localAnchorA = to_box2d(link.end_a_mm);
-        line.localAnchorB = to_box2d(link.end_b_mm);
+        attach(line, link);
         line.collideConnected = true;
         line.length = link.length_mm / kMmPerUnit;
         bool const is_rod = link.kind == LinkKind::rod;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "physics/body_mass.hpp"
+#include "world/link_places.hpp"
 
 namespace pogosim {
 
@@ -21,7 +22,7 @@ End end_at(World const& world, std::uint32_t body, Vec2 own_mm, std::span<std::u
     }
     Bodies const& bodies = world.bodies;
     if (bodies.spec[body].fixed) {
-        return {kStill, bodies.position_mm[body] + rotate(own_mm, bodies.heading_dir[body]), bodies.heading_rad[body]};
+        return {kStill, place_on_body(bodies, body, own_mm), bodies.heading_rad[body]};
     }
     return {mover_of[body], own_mm, 0.0F};
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/four.hpp"
+#include "physics/disjoint_sets.hpp"
 
 namespace pogosim {
 
@@ -26,15 +27,6 @@ bool is_moving(World const& world, Assembly const& assembly) {
 }
 
 }  // namespace
-
-/// The root of a body's tree, with path halving: R. E. Tarjan, "Efficiency of a good but not linear set union
-/// algorithm", Journal of the ACM 22 (1975) 215.
-std::uint32_t Islands::root_of(std::uint32_t body) {
-    while (parent_[body] != body) {
-        body = parent_[body] = parent_[parent_[body]];
-    }
-    return body;
-}
 
 /// Branch-free, since whether bodies are close is hard to predict.
 void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
@@ -111,9 +103,7 @@ void Islands::unite(DiskContacts const& contacts) {
             contacts_.push_back({.contact = close.contact, .next = kNone});
             meets_.push_back(close.meets ? 1 : 0);
             if (contacts.is_pair(close.contact)) {
-                std::uint32_t const root_a = root_of(contacts.near()[close.contact].a);
-                std::uint32_t const root_b = root_of(contacts.near()[close.contact].b);
-                parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+                pogosim::unite(parent_, contacts.near()[close.contact].a, contacts.near()[close.contact].b);
             }
         }
     }
@@ -124,7 +114,7 @@ void Islands::link(DiskContacts const& contacts) {
     islands_.clear();
     for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
         std::uint32_t const body = contacts.near()[contacts_[i].contact].a;
-        std::uint32_t const root = root_of(body);
+        std::uint32_t const root = root_of(parent_, body);
         parent_[body] = root;
         if (island_[root] == kNone) {
             island_[root] = static_cast<std::uint32_t>(islands_.size());
@@ -146,7 +136,7 @@ void Islands::link_assemblies(World const& world, Assemblies const& assemblies, 
     for (std::uint32_t i = 0; i < next_assembly_.size(); ++i) {
         Assembly const& assembly = assemblies.all()[i];
         bool const moves = reach.wakes_assemblies || is_moving(world, assembly);
-        std::uint32_t& island = island_[root_of(assembly.bodies.front())];
+        std::uint32_t& island = island_[root_of(parent_, assembly.bodies.front())];
         if (island == kNone && moves) {
             island = static_cast<std::uint32_t>(islands_.size());
             islands_.emplace_back();

@@ -57,7 +57,6 @@ private:
         bool meets;             // they touch within this step
     };
 
-    std::uint32_t root_of(std::uint32_t body);
     static void find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
                            std::vector<Close>& found);
     static void find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,

@@ -6,18 +6,19 @@
 
 #include "base/log.hpp"
 #include "base/rounded_time.hpp"
+#include "device/link_edit.hpp"
 
 namespace pogosim {
 
 namespace {
 
 std::string name_of(World const& world, std::uint32_t body) {
-    for (Object const& object : world.objects) {
-        if (body != kNone && object.body == body) {
-            return fmt::format("object {} of '{}'", object.id, world.categories[object.category].name);
-        }
+    std::uint32_t const index = object_of_body(world, body);
+    if (index == kNone) {
+        return "the arena";
     }
-    return "the arena";
+    Object const& object = world.objects[index];
+    return fmt::format("object {} of '{}'", object.id, world.categories[object.category].name);
 }
 
 }  // namespace

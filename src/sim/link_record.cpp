@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <span>
 #include <string_view>
 
 #include "base/json_text.hpp"
@@ -52,7 +52,7 @@ std::string list(std::string_view name, Values const& values, Text const& text) 
 
 /// The links from `first` on, without the last bracket.
 std::string links_from(World const& world, std::size_t first) {
-    std::vector<Link> const links(world.links.begin() + static_cast<std::ptrdiff_t>(first), world.links.end());
+    std::span<Link const> const links = std::span(world.links).subspan(first);
     std::vector<std::uint32_t> const object_of = objects_of_bodies(world);
     // Only the objects that are linked, in the order of the run.
     std::vector<std::uint32_t> objects;

@@ -19,6 +19,7 @@
 #include "config/places.hpp"
 #include "sim/link_file.hpp"
 #include "sim/place_objects.hpp"
+#include "world/link_places.hpp"
 
 namespace pogosim {
 
@@ -70,11 +71,6 @@ std::vector<Member> members_of(Scenario const& scenario, World const& world, std
         }
     }
     return members;
-}
-
-Vec2 into_frame(World const& world, std::uint32_t body, Vec2 offset) {
-    Vec2 const heading = world.bodies.heading_dir[body];
-    return rotate(offset, {heading.x, -heading.y});
 }
 
 Vec2 out_of_frame(World const& world, std::uint32_t body, Vec2 offset) {
@@ -336,8 +332,7 @@ private:
         std::vector<Pair> pairs;
         for (std::uint32_t const a : chosen()) {
             std::uint32_t const body = first_[a].body;
-            pairs.push_back(
-                {.a = a, .place_mm = place_of_first(a) + out_of_frame(world_, body, attached_at(body, {}))});
+            pairs.push_back({.a = a, .place_mm = place_on_body(world_.bodies, body, attached_at(body, {}))});
         }
         return pairs;
     }
@@ -364,7 +359,7 @@ private:
     Vec2 attached_at(std::uint32_t body, Vec2 to_other) const {
         switch (config_.attach) {
             case LinkAttachment::rim:
-                return rim_point(world_.bodies.shape[body], into_frame(world_, body, to_other));
+                return rim_point(world_.bodies.shape[body], in_frame_of(world_.bodies, body, to_other));
             case LinkAttachment::place:
                 return config_.attach_mm;
             case LinkAttachment::centre:
@@ -420,10 +415,11 @@ private:
 
     void set_hinge(Link& link, Pair const& pair, Vec2 apart) const {
         if (pair.b) {
-            link.end_a_mm = into_frame(world_, link.a, 0.5F * apart);
-            link.end_b_mm = into_frame(world_, link.b, -0.5F * apart);
+            link.end_a_mm = in_frame_of(world_.bodies, link.a, 0.5F * apart);
+            link.end_b_mm = in_frame_of(world_.bodies, link.b, -0.5F * apart);
         } else {
-            link.end_a_mm = config_.file.empty() ? attached_at(link.a, apart) : into_frame(world_, link.a, apart);
+            link.end_a_mm =
+                config_.file.empty() ? attached_at(link.a, apart) : in_frame_of(world_.bodies, link.a, apart);
             link.end_b_mm = pair.place_mm;
         }
         float const of_b = pair.b ? world_.bodies.heading_rad[link.b] : 0.0F;

@@ -27,7 +27,7 @@ struct Link {
     float stiffness_n_m = 0.0F;                                   // of a spring
     float damping_n_s_m = 0.0F;                                   // of a spring, along it
     float breaking_n = std::numeric_limits<float>::infinity();    // it is cut by a force that is larger
-    // Of a hinge: how far `b` may turn against `a`, rad, from the angle at which they are linked.
+    // How far `b` may turn against `a` about a hinge, rad; 0 is how they stood when they were linked.
     float least_rad = -std::numeric_limits<float>::infinity();
     float most_rad = std::numeric_limits<float>::infinity();
     float rest_rad = 0.0F;            // of a hinge: heading of `b`, or 0, less that of `a`, when it was made

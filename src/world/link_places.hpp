@@ -17,6 +17,12 @@ inline Vec2 place_on_body(Bodies const& bodies, std::uint32_t body, Vec2 point_m
     return bodies.position_mm[body] + rotate(point_mm, bodies.heading_dir[body]);
 }
 
+/// An offset in the arena as a body sees it: x ahead, y to its right.
+inline Vec2 in_frame_of(Bodies const& bodies, std::uint32_t body, Vec2 offset_mm) {
+    Vec2 const ahead = bodies.heading_dir[body];
+    return rotate(offset_mm, {ahead.x, -ahead.y});
+}
+
 inline LinkPlaces places_of_ends(World const& world, Link const& link) {
     Vec2 const a_mm = place_on_body(world.bodies, link.a, link.end_a_mm);
     Vec2 const b_mm = link.b == kNone ? link.end_b_mm : place_on_body(world.bodies, link.b, link.end_b_mm);
