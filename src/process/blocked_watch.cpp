@@ -33,7 +33,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{250};
 constexpr int kBlockedLooks = 8;  // 2 s, counted in looks so that time in which this process is stopped does not count
-constexpr int kIdleLooks = 40;    // 10 s without a run, after which the thread of the watch ends
+constexpr int kForgottenLooks = 2;  // per look that finds it awake, as a busy machine does now and then: see look()
+constexpr int kIdleLooks = 40;      // 10 s without a run, after which the thread of the watch ends
 
 /// The system call in which a thread waits.
 struct SystemCall {
@@ -114,7 +115,7 @@ private:
     struct Watched {
         CrashHandlerState* handler = nullptr;
         unsigned long calls = 0;  // of user code, when it was first found asleep
-        int blocked_looks = 0;    // looks in a row that found it asleep, in one call or in many short ones
+        int blocked_looks = 0;    // that found it asleep, in one call or in many short ones; fewer when it was awake
     };
 
     void serve() {
@@ -131,6 +132,7 @@ private:
         has_thread_ = false;
     }
 
+    /// Code that blocks more than two thirds of its time is told in the end, whatever else the machine does.
     static void look(Watched& watched) {
         CrashHandlerState const& handler = *watched.handler;
         unsigned long const calls = handler.calls.load(std::memory_order_acquire);
@@ -141,7 +143,7 @@ private:
         bool const sleeps = handler.inside && is_sleeping(handler.thread_id);
         std::optional<SystemCall> const call = sleeps ? system_call_of(handler.thread_id) : std::nullopt;
         if (!call || writes(*call)) {
-            watched.blocked_looks = 0;
+            watched.blocked_looks = std::max(0, watched.blocked_looks - kForgottenLooks);
             return;
         }
         if (watched.blocked_looks++ == 0) {

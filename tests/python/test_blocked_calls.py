@@ -73,7 +73,7 @@ def test_it_is_told_while_the_call_blocks(blocks: Path, tmp_path: Path) -> None:
 
 
 def test_calls_that_block_in_each_step_are_told(blocks: Path, tmp_path: Path) -> None:
-    done = end(start(blocks, tmp_path, "in many steps", 6.0))
+    done = end(start(blocks, tmp_path, "in many steps", 12.0))
     assert done.code == 0
     assert re.fullmatch(
         r"pogosim: warning: user_step of robot #\d of category 'robots', tick \d+, t = [\d.]+ s, at \S*blocks\.c:"
