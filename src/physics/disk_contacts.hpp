@@ -12,13 +12,11 @@
 #include "physics/membrane_filter.hpp"
 #include "physics/neighbour_list.hpp"
 #include "physics/soft_membranes.hpp"
+#include "physics/substep.hpp"
 #include "physics/wall_neighbour_list.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
-
-/// Overlaps up to this, in mm, are left as they are; they count as no contact.
-inline constexpr float kContactToleranceMm = 0.05F;
 
 /// Impulses of the two touches of a hull.
 struct HullImpulse {

@@ -19,6 +19,8 @@ struct Times {
 // Slower impacts are inelastic.
 inline constexpr float kRestitutionThresholdMmS = 5.0F;
 inline constexpr float kFastestPushMmS = 500.0F;
+/// Overlaps up to this are left as they are; they count as no contact.
+inline constexpr float kContactToleranceMm = 0.05F;
 // Largest delay of an impact.
 inline constexpr float kMostLateMm = 0.5F;
 
@@ -29,7 +31,7 @@ struct Demand {
 };
 
 /// Things that meet within the sub-step bounce at once, others may close their gap, and those that overlap are pushed
-/// apart. What is thrown against something else in this sub-step bounces in the next one, unless it would be deep in it
+/// apart, unless by less than the tolerance: nothing would take their speed back. What is thrown against something else in this sub-step bounces in the next one, unless it would be deep in it
 /// by then.
 inline Demand demand_of(float gap_mm, float speed_mm_s, float restitution, Times const& times) {
     bool const is_free = gap_mm > 0.0F;
@@ -39,7 +41,9 @@ inline Demand demand_of(float gap_mm, float speed_mm_s, float restitution, Times
         return {bouncing_mm_s, bouncing_mm_s, std::numeric_limits<float>::max()};
     }
     float const meeting_mm_s = -gap_mm * times.per_h;
-    return {.least_mm_s = is_free ? meeting_mm_s : std::min(-times.push_rate * gap_mm, kFastestPushMmS),
+    bool const is_pushed = gap_mm < -kContactToleranceMm;
+    float const pushed_mm_s = is_pushed ? std::min(-times.push_rate * gap_mm, kFastestPushMmS) : 0.0F;
+    return {.least_mm_s = is_free ? meeting_mm_s : pushed_mm_s,
             .relaxed_mm_s = is_free ? meeting_mm_s : 0.0F,
             .latest_mm_s =
                 is_elastic && is_free ? -(gap_mm + kMostLateMm) * times.per_h : std::numeric_limits<float>::max()};

@@ -184,6 +184,24 @@ TEST_P(Collisions, HeadOnLosesRelativeSpeedByTheRestitutionAndKeepsMomentum) {
     }
 }
 
+/// Wherever in a step they meet.
+TEST_P(Collisions, InelasticOneLeavesNoSpeedOfSeparation) {
+    for (double const time_step_s : {0.001, 0.01, 0.016}) {
+        for (Shape const& shape : {disk(26.5F), rectangle(53.0F, 53.0F)}) {
+            for (int i = 0; i < 40; ++i) {
+                World world = square_world(2000.0F);
+                world.time_step_s = time_step_s;
+                Material const soft{.restitution = 0.0F};
+                add(world, shape, kMiddle, {}, soft);
+                add(world, shape, kMiddle - Vec2{100.0F + 0.05F * static_cast<float>(i), 0.0F}, {100.0F, 0.0F}, soft);
+                run(world, 1.5);
+                EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 50.0F, 0.2F) << time_step_s << ", " << i;
+                EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 50.0F, 0.2F) << time_step_s << ", " << i;
+            }
+        }
+    }
+}
+
 TEST_P(Collisions, FastRobotDoesNotJumpASmallBody) {
     // 25 mm per sub-step, and the other one is in the middle between two places of the robot.
     World world = square_world(2000.0F);
