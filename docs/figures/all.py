@@ -41,6 +41,7 @@ try:
     import printed
     import reception
     import replay
+    import shapes_of_bodies
     import swarm
     import window
     from pictures import DOCS, Picture, difference, keep
@@ -79,6 +80,7 @@ SCRIPTS: dict[str, ModuleType] = {
         printed,
         reception,
         replay,
+        shapes_of_bodies,
         swarm,
         window,
     )

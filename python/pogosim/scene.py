@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.path import Path as Outline
 
 from pogosim.arguments import number
-from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
+from pogosim.defaults import COMMUNICATION_RADIUS_MM
 from pogosim.periodic import minimum_image
-
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
+from pogosim.shapes import Floats, Shape, shape_of
 
 MEMBRANES = ("membrane", "rectmembrane")
 RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
@@ -25,47 +22,6 @@ TALKERS = ("pogobot", "pogobject", "active_object")  # bodies with a program
 
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767
-
-
-@dataclass(frozen=True)
-class Shape:
-    """Shape of an object around its origin, heading along +x. Only the sizes of its own kind count."""
-
-    kind: str = "disk"  # disk, rectangle or triangle; of lamps and walls also global and arena
-    radius_mm: float = 10.0
-    width_mm: float = 10.0  # along x
-    height_mm: float = 10.0  # along y
-    side_length_mm: float = 10.0  # of an equilateral triangle, one corner towards -y
-
-    @property
-    def bounding_radius_mm(self) -> float:
-        """Radius of the smallest disk around the origin that holds the shape."""
-        if self.kind == "rectangle":
-            return math.hypot(self.width_mm, self.height_mm) / 2.0
-        return self.side_length_mm / math.sqrt(3.0) if self.kind == "triangle" else self.radius_mm
-
-    @property
-    def reach_mm(self) -> float:
-        """Distance from the origin to the border along the heading."""
-        if self.kind == "rectangle":
-            return self.width_mm / 2.0
-        return self.side_length_mm / 3.0 if self.kind == "triangle" else self.radius_mm
-
-    def outline(self) -> Floats:
-        """Corners, shape (n, 2), in mm; a disk has 72."""
-        if self.kind == "rectangle":
-            return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * [self.width_mm / 2.0, self.height_mm / 2.0]
-        corners = 3 if self.kind == "triangle" else 72
-        angle = -math.pi / 2.0 + 2.0 * math.pi * np.arange(corners) / corners
-        return self.bounding_radius_mm * np.column_stack([np.cos(angle), np.sin(angle)])
-
-    def holds(self, offset_mm: Floats) -> Bools:
-        """Tell which points, relative to the origin, are inside. Shape (n, 2) to (n,)."""
-        if self.kind == "global":
-            return np.ones(len(offset_mm), dtype=bool)
-        if self.kind == "disk":
-            return np.asarray(np.hypot(*offset_mm.T) <= self.radius_mm)
-        return Outline(self.outline()).contains_points(offset_mm)
 
 
 @dataclass(frozen=True)
@@ -182,18 +138,6 @@ def entries(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
 def type_of(settings: dict[str, Any]) -> str:
     """Type of an entry in lower case."""
     return str(settings.get("type", "pogobot")).lower()
-
-
-def shape_of(settings: dict[str, Any]) -> Shape:
-    """Shape that an entry's `geometry` and sizes say. What cannot be read has the simulator's default."""
-    plain = Shape(radius_mm=POGOBOT_RADIUS_MM) if type_of(settings) == "pogobot" else Shape()
-    return Shape(
-        kind=str(settings.get("geometry", plain.kind)).lower(),
-        radius_mm=number(settings.get("radius"), plain.radius_mm),
-        width_mm=number(settings.get("body_width"), plain.width_mm),
-        height_mm=number(settings.get("body_height"), plain.height_mm),
-        side_length_mm=number(settings.get("side_length"), plain.side_length_mm),
-    )
 
 
 def half_thickness_of(settings: dict[str, Any]) -> float:

@@ -7,6 +7,8 @@ namespace pogosim {
 
 namespace {
 
+constexpr int kCornersOfATurn = 32;  // of rounded corners
+
 bool passes_disk(Vec2 from, Vec2 to, Vec2 centre, float radius) {
     return squared_length(nearest_on_segment(from, to, centre) - centre) < radius * radius;
 }
@@ -58,7 +60,13 @@ void InfraredBlockers::start(World const& world) {
     for (std::uint32_t body = 0; body < specs.size(); ++body) {
         if (specs[body].blocks_infrared && !is_in_membrane[body]) {
             Shape const& shape = world.bodies.shape[body];
-            blockers_.push_back({.body = body, .corners = shape.kind == ShapeKind::disk ? Polygon() : outline(shape)});
+            if (shape.kind == ShapeKind::disk) {
+                blockers_.push_back({.body = body, .corners = {}});
+                continue;
+            }
+            for (Polygon& part : outlines(shape, kCornersOfATurn)) {
+                blockers_.push_back({.body = body, .corners = std::move(part)});
+            }
         }
     }
     poses_.clear();

@@ -14,6 +14,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "config/read_list.hpp"
 #include "config/shape_keys.hpp"
 
 namespace pogosim {
@@ -29,7 +30,6 @@ constexpr std::string_view kCycles = "a map of keys, such as {load: 3, multiply:
 constexpr std::string_view kCallTimes = "a map of keys, such as {imu_us: 150, message_byte_us: 10}";
 constexpr std::string_view kPlace = "rim, centre, or [x, y] from the centre (mm)";
 
-constexpr Range kDegrees = between(-360, 360);
 constexpr Range kAperture = above(0).up_to(180);
 
 std::span<Key<RobotSpec> const> part_keys() {
@@ -198,34 +198,6 @@ PartPlace place_of_part(MapReader const& reader, Vec2 direction) {
     PartPlace place;
     read_value({*node, reader.path_of("place")}, Limits{kCoordinate, "mm"}, place.offset_mm);
     return place;
-}
-
-/// Reads the list under a key; `read` makes a part of each map. Nothing without the key.
-template <class T, class Read>
-void read_list(MapReader& reader, std::string_view key, std::string_view expected, std::size_t least, std::size_t most,
-               std::vector<T>& parts, Read const& read) {
-    Node const* const list = reader.find(key);
-    if (list == nullptr) {
-        return;
-    }
-    Place const place{*list, reader.path_of(key)};
-    if (list->kind != Node::Kind::sequence) {
-        fail_expected(place, expected);
-    }
-    if (list->items.size() < least || list->items.size() > most) {
-        fail_at(place, fmt::format("expected {} to {} entries, found {}", least, most, list->items.size()));
-    }
-    std::vector<T> read_parts;
-    Node values;
-    values.kind = Node::Kind::sequence;
-    for (std::size_t i = 0; i < list->items.size(); ++i) {
-        MapReader inner(list->items[i], fmt::format("{}.{}", place.path, i), reader.reading());
-        read_parts.push_back(read(inner));
-        inner.finish();
-        values.items.push_back(inner.values());
-    }
-    parts = std::move(read_parts);
-    reader.set_value(key, std::move(values));
 }
 
 Part read_part(MapReader& reader) {

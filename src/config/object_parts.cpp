@@ -225,11 +225,6 @@ BatterySpec read_battery_map(MapReader& reader) {
     return battery;
 }
 
-void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape) {
-    reader.read(geometry_keys, shape);
-    reader.read(size_keys(), shape);
-}
-
 void read_body(MapReader& reader, ObjectConfig& object) {
     constexpr float kLeastDensity = 1e-10F;
     BodySpec& body = object.spec.body.emplace();

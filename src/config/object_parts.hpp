@@ -9,9 +9,6 @@
 
 namespace pogosim {
 
-/// `geometry`, which takes the names of the given table, and the sizes of all shapes.
-void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape);
-
 /// `body_*`: makes the object tangible.
 void read_body(MapReader& reader, ObjectConfig& object);
 

@@ -18,9 +18,14 @@ namespace {
 std::string size_key(Shape const& shape, bool longer) {
     switch (shape.kind) {
         case ShapeKind::rectangle:
+        case ShapeKind::capsule:
             return (shape.width_mm >= shape.height_mm) == longer ? "body_width" : "body_height";
         case ShapeKind::triangle:
             return "side_length";
+        case ShapeKind::polygon:
+            return "corners";
+        case ShapeKind::compound:
+            return "parts";
         default:
             return "radius";
     }

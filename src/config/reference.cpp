@@ -15,6 +15,7 @@
 #include "config/placement_keys.hpp"
 #include "config/reception_keys.hpp"
 #include "config/scenario_keys.hpp"
+#include "config/shape_keys.hpp"
 
 namespace pogosim {
 
@@ -35,6 +36,8 @@ std::vector<KeyGroup> configuration_reference() {
         type.read(reader, object);
         groups.push_back({"objects.<category>", std::string(type.name), std::string(type.doc), reader.known_keys()});
     }
+
+    groups.push_back({"objects.<category>.parts.<number>", "", "A part of a compound.", shape_part_keys()});
 
     MapReader area(nothing, "objects.<category>.area", reading);
     read_disk_area(area);

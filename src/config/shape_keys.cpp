@@ -1,83 +1,282 @@
 #include "config/shape_keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/read_list.hpp"
+#include "geometry/obstacle.hpp"
+#include "geometry/outline_survey.hpp"
 
 namespace pogosim {
 
 namespace {
 
 using K = Key<Shape>;
+using NamedKinds = NamedValues<ShapeKind>;
 
-constexpr ChoiceRule kAnyCase{.any_case = true};
+constexpr std::string_view kCorners = "a list of 3 to 8 corners, such as [[0, 0], [40, 0], [20, 30]] (mm)";
+constexpr std::string_view kParts =
+    "a list of maps, such as [{geometry: disk, radius: 20}, {geometry: rectangle, body_width: 60, body_height: 10, "
+    "x: 30}]";
+constexpr std::size_t kMostParts = 16;
+constexpr std::size_t kMostCorners = 8;
+constexpr float kShortestSideMm = 1e-3F;
+constexpr float kTouchingMm = 0.1F;  // parts of a compound hold together up to this gap
 
-K solid_geometry_key() {
-    return {"geometry",
-            one_of(&Shape::kind,
-                   {{"disk", ShapeKind::disk}, {"rectangle", ShapeKind::rectangle}, {"triangle", ShapeKind::triangle}},
-                   kAnyCase),
-            any(), "", "Shape of the object; case-insensitive."};
+/// What has one outline.
+NamedKinds const kConvex{{"disk", ShapeKind::disk},
+                         {"rectangle", ShapeKind::rectangle},
+                         {"capsule", ShapeKind::capsule},
+                         {"triangle", ShapeKind::triangle},
+                         {"polygon", ShapeKind::polygon}};
+
+NamedKinds operator+(NamedKinds first, NamedKinds const& rest) {
+    first.insert(first.end(), rest.begin(), rest.end());
+    return first;
+}
+
+K geometry_key(NamedKinds const& kinds, std::string_view doc, bool required) {
+    return {"geometry", one_of(&Shape::kind, kinds, {.any_case = true}), any(), "", doc, required};
+}
+
+K solid_geometry_key(bool required) {
+    return geometry_key(kConvex + NamedKinds{{"compound", ShapeKind::compound}},
+                        "Shape of the object; case-insensitive.", required);
+}
+
+std::span<K const> size_keys() {
+    constexpr auto is_long = [](Shape const& shape) {
+        return shape.kind == ShapeKind::rectangle || shape.kind == ShapeKind::capsule;
+    };
+    static std::array const keys{
+        K{"radius", &Shape::radius_mm, kBodyLength, "mm", "Radius of a disk."}.only_if(
+            [](Shape const& shape) { return shape.kind == ShapeKind::disk; }),
+        K{"body_width", &Shape::width_mm, kBodyLength, "mm", "Size of a rectangle or a capsule along x."}.only_if(
+            is_long),
+        K{"body_height", &Shape::height_mm, kBodyLength, "mm", "Size of a rectangle or a capsule along y."}.only_if(
+            is_long),
+        K{"side_length", &Shape::side_length_mm, kBodyLength, "mm",
+          "Side of an equilateral triangle, one corner towards -y."}
+            .only_if([](Shape const& shape) { return shape.kind == ShapeKind::triangle; }),
+        K{"corner_radius", &Shape::corner_radius_mm, between(0, kMaxLength), "mm",
+          "Rounds the corners of a rectangle, triangle or polygon, within its sharp corners."}
+            .only_if(has_corners),
+        K{"corners", Elsewhere{kCorners}, any(), "",
+          "Corners of a convex polygon, in order. Its centre of mass is the object's position, wherever the corners are "
+          "counted from."}
+            .only_if([](Shape const& shape) { return shape.kind == ShapeKind::polygon; }),
+    };
+    return keys;
+}
+
+std::span<K const> part_list_keys() {
+    static std::array const keys{
+        K{"parts", Elsewhere{kParts}, any(), "",
+          "Convex parts of a compound, 1 to 16, which overlap or touch; see their table. Its centre of mass is the "
+          "object's position. Where parts overlap, both weigh."}
+            .only_if([](Shape const& shape) { return shape.kind == ShapeKind::compound; }),
+    };
+    return keys;
+}
+
+Polygon read_corners(Place const& place) {
+    std::vector<Node> const& items = place.node.items;
+    if (items.size() < 3 || items.size() > kMostCorners) {
+        fail_expected(place, kCorners);
+    }
+    Polygon corners;
+    UnitSlips slips;
+    for (Node const& item : items) {
+        Place const corner{item, fmt::format("{}.{}", place.path, corners.size())};
+        read_value(corner, {kCoordinate, "mm"}, corners.emplace_back());
+        slips.look_at(corner, {kCoordinate, "mm"});
+    }
+    slips.warn();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (length(corners[(i + 1) % corners.size()] - corners[i]) < kShortestSideMm) {
+            fail_at(place, fmt::format("corners {} and {} are the same", i, (i + 1) % corners.size()));
+        }
+    }
+    if (signed_area(corners) == 0.0) {
+        fail_at(place, "these corners enclose no area");
+    }
+    if (survey_outlines({&corners, 1}).crossing) {
+        fail_at(place, "the sides of this polygon cross or touch each other; list its corners in order, each once");
+    }
+    if (signed_area(corners) < 0.0) {
+        std::ranges::reverse(corners);
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        Vec2 const before = corners[i] - corners[(i + corners.size() - 1) % corners.size()];
+        Vec2 const after = corners[(i + 1) % corners.size()] - corners[i];
+        if (cross(before, after) < 0.0F) {
+            fail_at(place, fmt::format("the polygon is not convex at ({:g}, {:g}); put such a body together of convex "
+                                       "parts, with geometry: compound",
+                                       corners[i].x, corners[i].y));
+        }
+    }
+    return corners;
+}
+
+/// A list that the shape has no use for only has to be one.
+void require_list(MapReader const& reader, std::string_view key, std::string_view expected) {
+    Node const* const list = reader.find(key);
+    if (list != nullptr && list->kind != Node::Kind::sequence) {
+        fail_expected({*list, reader.path_of(key)}, expected);
+    }
+}
+
+/// The sizes of a shape that is no compound.
+void read_convex(MapReader& reader, std::span<K const> geometry_keys, Shape& shape) {
+    reader.read(geometry_keys, shape);
+    reader.read(size_keys(), shape);
+    require_list(reader, "corners", kCorners);
+    if (shape.kind == ShapeKind::polygon) {
+        Node const* const corners = reader.find("corners");
+        if (corners == nullptr) {
+            fail_at(reader.place(), fmt::format("needs corners: {}", kCorners));
+        }
+        shape.corners_mm = read_corners({*corners, reader.path_of("corners")});
+    }
+    if (has_corners(shape) && shape.corner_radius_mm > largest_corner_radius(shape)) {
+        fail_at({*reader.find("corner_radius"), reader.path_of("corner_radius")},
+                fmt::format("expected at most {:.4g} (mm), which leaves some of every side, found {:g}",
+                            largest_corner_radius(shape), shape.corner_radius_mm));
+    }
+}
+
+/// A part, and where it is in its compound.
+struct WrittenPart {
+    float x_mm = 0.0F;
+    float y_mm = 0.0F;
+    float angle_deg = 0.0F;
+};
+
+std::span<Key<WrittenPart> const> part_keys() {
+    using P = Key<WrittenPart>;
+    static std::array const keys{
+        P{"x", &WrittenPart::x_mm, kCoordinate, "mm", "Where the part's centre of mass is, along the heading."},
+        P{"y", &WrittenPart::y_mm, kCoordinate, "mm", "The same to the right."},
+        P{"angle_deg", &WrittenPart::angle_deg, kDegrees, "degrees",
+          "By how much the part is turned, clockwise on the screen."},
+    };
+    return keys;
+}
+
+std::span<K const> part_geometry_keys() {
+    static std::array const keys{geometry_key(kConvex, "Shape of the part; case-insensitive.", /*required=*/true)};
+    return keys;
+}
+
+RoundedPolygon read_part(MapReader& reader) {
+    Shape shape;
+    WrittenPart written;
+    read_convex(reader, part_geometry_keys(), shape);
+    reader.read(part_keys(), written);
+    Vec2 const offset_mm{written.x_mm, written.y_mm};
+    float const turn_rad = written.angle_deg * std::numbers::pi_v<float> / 180.0F;
+    return moved(convex_parts(centred(shape)).front(), offset_mm, turn_rad);
+}
+
+/// Which parts hang together with the first one, by gaps of at most kTouchingMm.
+std::vector<bool> joined_to_first(std::vector<RoundedPolygon> const& parts) {
+    std::vector<bool> joined(parts.size(), false);
+    std::vector<std::size_t> next{0};
+    joined[0] = true;
+    auto const wider = [&](std::size_t i) {
+        return Obstacle{
+            .name = {}, .line = parts[i].corners_mm, .half_thickness_mm = parts[i].radius_mm + 0.5F * kTouchingMm};
+    };
+    while (!next.empty()) {
+        std::size_t const from = next.back();
+        next.pop_back();
+        for (std::size_t to = 0; to < parts.size(); ++to) {
+            if (!joined[to] && overlap_mm(wider(from), wider(to)) > 0.0F) {
+                joined[to] = true;
+                next.push_back(to);
+            }
+        }
+    }
+    return joined;
+}
+
+void read_parts(MapReader& reader, Shape& shape) {
+    Node const* const list = reader.find("parts");
+    if (list == nullptr) {
+        fail_at(reader.place(), fmt::format("needs parts: {}", kParts));
+    }
+    read_list(reader, "parts", kParts, 1, kMostParts, shape.parts, read_part);
+    std::vector<bool> const joined = joined_to_first(shape.parts);
+    auto const loose = std::ranges::find(joined, false);
+    if (loose != joined.end()) {
+        auto const number = static_cast<std::size_t>(loose - joined.begin());
+        fail_at({list->items[number], fmt::format("{}.{}", reader.path_of("parts"), number)},
+                "hangs together with no part before it; parts have to overlap or touch");
+    }
 }
 
 }  // namespace
 
 std::span<K const> robot_geometry_keys() {
-    static std::array const keys{solid_geometry_key()};
+    static std::array const keys{solid_geometry_key(/*required=*/false)};
     return keys;
 }
 
 std::span<K const> solid_geometry_keys() {
-    static std::array const keys{[] {
-        K key = solid_geometry_key();
-        key.required = true;
-        return key;
-    }()};
+    static std::array const keys{solid_geometry_key(/*required=*/true)};
+    return keys;
+}
+
+std::span<K const> ring_geometry_keys() {
+    static std::array const keys{geometry_key(kConvex, "Shape of the object; case-insensitive.", /*required=*/true)};
     return keys;
 }
 
 std::span<K const> outline_geometry_keys() {
     static std::array const keys{
-        K{"geometry",
-          one_of(&Shape::kind,
-                 {{"arena", ShapeKind::arena},
-                  {"disk", ShapeKind::disk},
-                  {"rectangle", ShapeKind::rectangle},
-                  {"triangle", ShapeKind::triangle}},
-                 kAnyCase),
-          any(), "", "arena: all walls; otherwise the outline of a shape at x and y. Case-insensitive.",
-          /*required=*/true},
-    };
+        geometry_key(NamedKinds{{"arena", ShapeKind::arena}} + kConvex,
+                     "arena: all walls; otherwise the outline of a shape at x and y. Case-insensitive.",
+                     /*required=*/true)};
     return keys;
 }
 
 std::span<K const> any_geometry_keys() {
     static std::array const keys{
-        K{"geometry",
-          one_of(&Shape::kind,
-                 {{"global", ShapeKind::global},
-                  {"arena", ShapeKind::arena},
-                  {"disk", ShapeKind::disk},
-                  {"rectangle", ShapeKind::rectangle},
-                  {"triangle", ShapeKind::triangle}},
-                 kAnyCase),
-          any(), "",
-          "global: everywhere; arena: inside the arena's polygons; otherwise a shape around the centre. "
-          "Case-insensitive.",
-          /*required=*/true},
-    };
+        geometry_key(NamedKinds{{"global", ShapeKind::global}, {"arena", ShapeKind::arena}} + kConvex,
+                     "global: everywhere; arena: inside the arena's polygons; otherwise a shape around the centre. "
+                     "Case-insensitive.",
+                     /*required=*/true)};
     return keys;
 }
 
-std::span<K const> size_keys() {
-    constexpr auto is_rectangle = [](Shape const& shape) { return shape.kind == ShapeKind::rectangle; };
-    static std::array const keys{
-        K{"radius", &Shape::radius_mm, kBodyLength, "mm", "Radius of a disk."}.only_if(
-            [](Shape const& shape) { return shape.kind == ShapeKind::disk; }),
-        K{"body_width", &Shape::width_mm, kBodyLength, "mm", "Size of a rectangle along x."}.only_if(is_rectangle),
-        K{"body_height", &Shape::height_mm, kBodyLength, "mm", "Size of a rectangle along y."}.only_if(is_rectangle),
-        K{"side_length", &Shape::side_length_mm, kBodyLength, "mm",
-          "Side of an equilateral triangle, one corner towards -y."}
-            .only_if([](Shape const& shape) { return shape.kind == ShapeKind::triangle; }),
-    };
+void read_shape(MapReader& reader, std::span<K const> geometry_keys, Shape& shape) {
+    if (!reader.collect([&] { read_convex(reader, geometry_keys, shape); })) {
+        shape = {};
+    }
+    shape = centred(shape);
+}
+
+void read_solid_shape(MapReader& reader, std::span<K const> geometry_keys, Shape& shape) {
+    read_shape(reader, geometry_keys, shape);
+    reader.read(part_list_keys(), shape);
+    reader.collect([&] { require_list(reader, "parts", kParts); });
+    if (shape.kind == ShapeKind::compound && !reader.collect([&] { read_parts(reader, shape); })) {
+        shape = {};
+    }
+    shape = centred(shape);
+}
+
+std::vector<KeyDescription> shape_part_keys() {
+    std::vector<KeyDescription> keys = described(part_geometry_keys(), Shape());
+    std::ranges::copy(described(size_keys(), Shape()), std::back_inserter(keys));
+    std::ranges::copy(described(part_keys(), WrittenPart()), std::back_inserter(keys));
     return keys;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "config/key.hpp"
+#include "config/map_reader.hpp"
 #include "config/scenario.hpp"
 #include "geometry/shape.hpp"
 
@@ -14,18 +15,27 @@ inline constexpr Range kLength = above(0).up_to(kMaxLength).usually_from(1);
 /// Smallest size of a body: a float cannot divide by the mass of a smaller one.
 inline constexpr Range kBodyLength = between(1e-3, kMaxLength).usually_from(1);
 inline constexpr Range kLengthOrZero = between(0, kMaxLength).usually_from(1);
+inline constexpr Range kDegrees = between(-360, 360);
 inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_from(1);
 
-/// `geometry` of things with a body: disk, rectangle, triangle.
+/// `geometry` of things with a rigid body.
 std::span<Key<Shape> const> solid_geometry_keys();
 /// The same for robots, which are disks unless it says otherwise.
 std::span<Key<Shape> const> robot_geometry_keys();
-/// Geometries of walls: those of bodies, or arena.
+/// Geometries of membranes: what has one outline.
+std::span<Key<Shape> const> ring_geometry_keys();
+/// Geometries of walls: what has one outline, or arena.
 std::span<Key<Shape> const> outline_geometry_keys();
-/// Geometries of lamps: those of bodies, arena, or global.
+/// Geometries of lamps: what has one outline, arena, or global.
 std::span<Key<Shape> const> any_geometry_keys();
 
-/// The sizes of all shapes.
-std::span<Key<Shape> const> size_keys();
+/// `geometry`, which takes the names of the given table, and what goes with it.
+void read_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape);
+
+/// The same, which can be a compound.
+void read_solid_shape(MapReader& reader, std::span<Key<Shape> const> geometry_keys, Shape& shape);
+
+/// The keys of a part of a compound.
+std::vector<KeyDescription> shape_part_keys();
 
 }  // namespace pogosim

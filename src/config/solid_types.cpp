@@ -12,14 +12,14 @@ namespace {
 
 void read_pogobot(MapReader& reader, ObjectConfig& object) {
     object.spec.shape = kPogobotShape;
-    read_shape(reader, robot_geometry_keys(), object.spec.shape);
+    read_solid_shape(reader, robot_geometry_keys(), object.spec.shape);
     read_robot(reader, object);
     read_body(reader, object);
     read_placement(reader, object);
 }
 
 void read_pogobject(MapReader& reader, ObjectConfig& object) {
-    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_solid_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_robot(reader, object, head_model());
     read_body(reader, object);
     read_placement(reader, object);
@@ -76,7 +76,7 @@ std::span<Key<MembraneSpec> const> thickness_keys() {
 }
 
 void read_membrane_object(MapReader& reader, ObjectConfig& object, bool segments) {
-    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_shape(reader, ring_geometry_keys(), object.spec.shape);
     read_robot(reader, object, outline_model());
     read_body(reader, object);
     read_blocking(reader, object);
@@ -99,7 +99,7 @@ void read_rectmembrane(MapReader& reader, ObjectConfig& object) {
 }
 
 void read_active_object(MapReader& reader, ObjectConfig& object) {
-    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_solid_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_robot(reader, object, active_model());
     read_body(reader, object);
     read_placement(reader, object);
@@ -107,7 +107,7 @@ void read_active_object(MapReader& reader, ObjectConfig& object) {
 }
 
 void read_passive_object(MapReader& reader, ObjectConfig& object) {
-    read_shape(reader, solid_geometry_keys(), object.spec.shape);
+    read_solid_shape(reader, solid_geometry_keys(), object.spec.shape);
     read_body(reader, object);
     read_blocking(reader, object);
     read_placement(reader, object);

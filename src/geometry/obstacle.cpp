@@ -30,11 +30,15 @@ float reach_into(Obstacle const& a, Obstacle const& b) {
 
 }  // namespace
 
-Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, float heading_rad) {
-    if (shape.kind == ShapeKind::disk) {
-        return {.name = std::move(name), .line = {position_mm}, .half_thickness_mm = shape.radius_mm};
+std::vector<Obstacle> solid_obstacles(std::string const& name, Shape const& shape, Vec2 position_mm,
+                                      float heading_rad) {
+    std::vector<Obstacle> obstacles;
+    for (RoundedPolygon const& part : convex_parts(shape)) {
+        obstacles.push_back({.name = name,
+                             .line = moved(part.corners_mm, position_mm, heading_rad),
+                             .half_thickness_mm = part.radius_mm});
     }
-    return {.name = std::move(name), .line = moved(outline(shape), position_mm, heading_rad)};
+    return obstacles;
 }
 
 Obstacle moved_by(Vec2 offset_mm, Obstacle obstacle) {

@@ -18,8 +18,8 @@ struct Obstacle {
     bool solid = true;
 };
 
-/// A rigid body. The shape is a disk, a rectangle or a triangle.
-Obstacle solid_obstacle(std::string name, Shape const& shape, Vec2 position_mm, float heading_rad);
+/// The parts of a rigid body.
+std::vector<Obstacle> solid_obstacles(std::string const& name, Shape const& shape, Vec2 position_mm, float heading_rad);
 
 /// The same obstacle elsewhere.
 Obstacle moved_by(Vec2 offset_mm, Obstacle obstacle);

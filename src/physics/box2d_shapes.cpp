@@ -1,12 +1,12 @@
 #include "physics/box2d_shapes.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/exact_math.hpp"
+#include "physics/body_mass.hpp"
 #include "physics/box2d_units.hpp"
 
 namespace pogosim {
@@ -42,22 +42,7 @@ std::vector<b2Vec2> wall_corners(Polygon const& polygon, bool outer) {
     return corners;
 }
 
-/// Area of a convex polygon around its centroid, and the square of its radius of gyration.
-std::pair<float, float> area_and_gyration2(b2PolygonShape const& polygon) {
-    float area = 0.0F;
-    float moment = 0.0F;
-    for (int32 i = 0; i < polygon.m_count; ++i) {
-        b2Vec2 const a = polygon.m_vertices[i];
-        b2Vec2 const b = polygon.m_vertices[(i + 1) % polygon.m_count];
-        float const triangle = 0.5F * b2Cross(a, b);
-        area += triangle;
-        moment += triangle * (b2Dot(a, a) + b2Dot(a, b) + b2Dot(b, b)) / 6.0F;
-    }
-    return {area, area > 0.0F ? moment / area : 0.0F};
-}
-
-/// Corners clockwise on the screen around the centroid, convex. By hand, since b2PolygonShape::Set() joins corners that
-/// lie close together.
+/// Corners clockwise on the screen, convex. By hand, since b2PolygonShape::Set() joins corners that lie close together.
 void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef fixture) {
     b2PolygonShape polygon;
     polygon.m_centroid = b2Vec2_zero;
@@ -70,22 +55,38 @@ void add_polygon(b2Body& body, Polygon const& corners_mm, b2FixtureDef fixture) 
     }
     polygon.m_radius = kSkin;
     fixture.shape = &polygon;
-    float const density = std::exchange(fixture.density, 0.0F);
     body.CreateFixture(&fixture);
-    auto const [area, gyration2] = area_and_gyration2(polygon);
-    set_mass(body, density * area, gyration2);
 }
 
-void add_disk(b2Body& body, float radius_mm, b2FixtureDef fixture) {
-    float const radius = radius_mm / kMmPerUnit;
+void add_disk(b2Body& body, Vec2 centre_mm, float radius_mm, b2FixtureDef fixture) {
     b2CircleShape disk;
-    disk.m_radius = radius + kSkin;
+    disk.m_p = to_box2d(centre_mm);
+    disk.m_radius = radius_mm / kMmPerUnit + kSkin;
     fixture.shape = &disk;
-    float const density = std::exchange(fixture.density, 0.0F);
     body.CreateFixture(&fixture);
-    // The skin weighs nothing.
-    float const mass = density * std::numbers::pi_v<float> * radius * radius;
-    set_mass(body, mass, 0.5F * radius * radius);
+}
+
+/// The rectangle outside a side.
+Polygon strip(Vec2 from_mm, Vec2 to_mm, float width_mm) {
+    Vec2 const way = to_mm - from_mm;
+    float const length_mm = exact::hypot(way.x, way.y);
+    Vec2 const out_mm = (width_mm / length_mm) * Vec2{way.y, -way.x};
+    return {from_mm + out_mm, to_mm + out_mm, to_mm, from_mm};
+}
+
+/// Box2D has no rounded polygons that roll over their corners, so one is put together: its core, a strip along each side
+/// and a disk at each corner.
+void add_part(b2Body& body, RoundedPolygon const& part, b2FixtureDef const& fixture) {
+    Polygon const& corners = part.corners_mm;
+    if (corners.size() > 2) {
+        add_polygon(body, corners, fixture);
+    }
+    for (std::size_t i = 0; i < corners.size() && part.radius_mm > 0.0F; ++i) {
+        add_disk(body, corners[i], part.radius_mm, fixture);
+        if (corners.size() > 1) {
+            add_polygon(body, strip(corners[i], corners[(i + 1) % corners.size()], part.radius_mm), fixture);
+        }
+    }
 }
 
 }  // namespace
@@ -104,12 +105,14 @@ void set_mass(b2Body& body, float mass, float gyration2) {
     body.SetMassData(&data);
 }
 
-void add_shape(b2Body& body, Shape const& shape, b2FixtureDef const& fixture) {
-    if (shape.kind == ShapeKind::rectangle || shape.kind == ShapeKind::triangle) {
-        add_polygon(body, outline(shape), fixture);
-    } else {
-        add_disk(body, bounding_radius(shape), fixture);
+void add_shape(b2Body& body, Shape const& shape, b2FixtureDef fixture) {
+    float const density = std::exchange(fixture.density, 0.0F);  // no skin weighs anything
+    for (RoundedPolygon const& part : convex_parts(shape)) {
+        add_part(body, part, fixture);
     }
+    constexpr float mm2 = kMmPerUnit * kMmPerUnit;
+    ShapeMass const mass = mass_of(shape);
+    set_mass(body, density * mass.area_mm2 / mm2, mass.gyration_mm2 / mm2);
 }
 
 }  // namespace pogosim

@@ -114,8 +114,10 @@ float ContinuousCollision::free_fraction(World const& world, Hulls const& hulls,
         if (hulls.is_one(i) || (hulls.is_one(k) && !bodies.spec[k].fixed)) {
             fraction = std::min(fraction, fraction_before_hull(world, hulls, i, k));
         } else if (hulls.is_one(k)) {
-            fraction = std::min(fraction,
-                                hulls.fraction_to_touch(world, k, starts_mm_[i], motions_mm_[i], bodies.radius_mm[i]));
+            for (std::uint32_t part = 0; part < hulls.part_count(k); ++part) {
+                fraction = std::min(fraction, hulls.fraction_to_touch(world, k, part, starts_mm_[i], motions_mm_[i],
+                                                                      bodies.radius_mm[i]));
+            }
         } else {
             fraction = std::min(fraction, fraction_before(world, i, k));
         }
@@ -139,23 +141,38 @@ float ContinuousCollision::fraction_before(World const& world, std::uint32_t i, 
     return together + alone * fraction_to_touch(rest_mm, -alone * motions_mm_[i], radius_mm);
 }
 
-/// The hull of a body after a fraction of its motion, about a point near its start.
-Hull ContinuousCollision::hull_at(World const& world, Hulls const& hulls, std::uint32_t i, float fraction,
+/// A part of a body after a fraction of its motion, about a point near its start.
+Hull ContinuousCollision::hull_at(World const& world, Hulls const& hulls, PartOf const& part, float fraction,
                                   Vec2 origin_mm) const {
+    std::uint32_t const i = part.body;
     float const made = std::min(fraction, fractions_[i]);
     Vec2 const place_mm = minimum_image(world, origin_mm, starts_mm_[i]) + made * motions_mm_[i];
-    return placed(hulls.of(world, i), place_mm, direction(world.bodies.start_rad[i] + made * turns_rad_[i]));
+    return placed(hulls.of(world, i, part.part), place_mm, direction(world.bodies.start_rad[i] + made * turns_rad_[i]));
 }
 
-/// The same if one of them is a hull. Conservative advancement, in steps in which the gap cannot close: B. Mirtich,
-/// "Impulse-based dynamic simulation of rigid body systems", PhD thesis, Berkeley 1996.
+/// The same as fraction_before() if one of them is a hull.
 float ContinuousCollision::fraction_before_hull(World const& world, Hulls const& hulls, std::uint32_t i,
                                                 std::uint32_t k) const {
+    float fraction = fractions_[i];
+    for (std::uint32_t own = 0; own < hulls.part_count(i); ++own) {
+        for (std::uint32_t other = 0; other < hulls.part_count(k); ++other) {
+            fraction = std::min(fraction, fraction_before_part(world, hulls, {i, own}, {k, other}));
+        }
+    }
+    return fraction;
+}
+
+/// Conservative advancement, in steps in which the gap cannot close: B. Mirtich, "Impulse-based dynamic simulation of
+/// rigid body systems", PhD thesis, Berkeley 1996.
+float ContinuousCollision::fraction_before_part(World const& world, Hulls const& hulls, PartOf const& own,
+                                                PartOf const& other) const {
     constexpr int most_steps = 64;
     Bodies const& bodies = world.bodies;
+    std::uint32_t const i = own.body;
+    std::uint32_t const k = other.body;
     auto const gap_mm = [&](float fraction) {
-        return gap_between_mm(hull_at(world, hulls, i, fraction, starts_mm_[i]),
-                              hull_at(world, hulls, k, fraction, starts_mm_[i]));
+        return gap_between_mm(hull_at(world, hulls, own, fraction, starts_mm_[i]),
+                              hull_at(world, hulls, other, fraction, starts_mm_[i]));
     };
     float const closing_mm = length(motions_mm_[i]) + length(motions_mm_[k]) +
                              std::abs(turns_rad_[i]) * bodies.radius_mm[i] +

@@ -25,13 +25,19 @@ public:
                                                       std::span<std::uint32_t const> fast);
 
 private:
+    struct PartOf {
+        std::uint32_t body;
+        std::uint32_t part;
+    };
+
     void find_ways(World const& world, std::span<std::uint32_t const> fast);
     float reach_mm(Bodies const& bodies, std::uint32_t i) const;
     bool can_stop(Assemblies const& assemblies, std::uint32_t i, std::uint32_t k) const;
     float free_fraction(World const& world, Hulls const& hulls, Assemblies const& assemblies, std::uint32_t i) const;
     float fraction_before(World const& world, std::uint32_t i, std::uint32_t k) const;
     float fraction_before_hull(World const& world, Hulls const& hulls, std::uint32_t i, std::uint32_t k) const;
-    Hull hull_at(World const& world, Hulls const& hulls, std::uint32_t i, float fraction, Vec2 origin_mm) const;
+    float fraction_before_part(World const& world, Hulls const& hulls, PartOf const& own, PartOf const& other) const;
+    Hull hull_at(World const& world, Hulls const& hulls, PartOf const& part, float fraction, Vec2 origin_mm) const;
     void look_at_again(World const& world, std::uint32_t i);
 
     std::vector<char> is_of_membrane_;  // all bodies

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
+#include "physics/body_mass.hpp"
 #include "physics/membrane_mass.hpp"
 
 namespace pogosim {
@@ -40,7 +42,7 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
         float const radius_mm = bodies.radius_mm[i];
         auto const body = static_cast<std::uint32_t>(i);
         if (hulls_.is_one(body)) {
-            auto const [area_mm2, of_area_mm2] = mass_of(hulls_.of(world, body));
+            auto const [area_mm2, of_area_mm2] = mass_of(bodies.shape[i]);
             mass.push_back(bodies.spec[i].density * area_mm2);
             gyration_mm2.push_back(of_area_mm2);
         } else {
@@ -63,9 +65,13 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
 
 /// The bounding disk of a polygon may be much larger than the polygon.
 void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
-    if (!hulls_.is_one(fixed) ||
-        hulls_.gap_to(world, fixed, world.bodies.position_mm[disk]).distance_mm < disks_[disk].radius_mm + skin_mm) {
-        with_fixed_.push_back({.a = disk, .b = fixed, .law = law_between(disks_[disk], disks_[fixed])});
+    float const reach_mm = disks_[disk].radius_mm + skin_mm;
+    for (std::uint32_t part = 0; part < hulls_.part_count(fixed); ++part) {
+        if (!hulls_.is_one(fixed) ||
+            hulls_.gap_to(world, fixed, part, world.bodies.position_mm[disk]).distance_mm < reach_mm) {
+            with_fixed_.push_back({.a = disk, .b = fixed, .law = law_between(disks_[disk], disks_[fixed])});
+            fixed_part_.push_back(part);
+        }
     }
 }
 
@@ -75,6 +81,7 @@ void DiskContacts::build(World const& world, Assemblies const& assemblies, Neigh
     keep_impulses();
     near_.clear();
     with_fixed_.clear();
+    fixed_part_.clear();
     for (auto const [a, b] : pairs.pairs()) {
         if (!may_collide(assemblies, a, b) || is_movable_hull(a) || is_movable_hull(b)) {
             continue;
@@ -95,6 +102,7 @@ void DiskContacts::build(World const& world, Assemblies const& assemblies, Neigh
             near_.push_back({.a = body, .b = edge, .law = law_between(disks_[body], wall_)});
         }
     }
+    hull_parts_.clear();
     first_hull_ = first_hull_fixed_ = first_hull_wall_ = static_cast<std::uint32_t>(near_.size());
     if (!hulls_.empty()) {
         add_hulls(assemblies, pairs, walls);
@@ -104,55 +112,79 @@ void DiskContacts::build(World const& world, Assemblies const& assemblies, Neigh
 
 void DiskContacts::add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls) {
     with_fixed_.clear();
+    parts_with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
         if (!may_collide(assemblies, a, b) || !(is_movable_hull(a) || is_movable_hull(b))) {
             continue;
         }
         NearContact const near{
             .a = is_fixed(a) ? b : a, .b = is_fixed(a) ? a : b, .law = law_between(disks_[a], disks_[b])};
-        (is_fixed(near.b) ? with_fixed_ : near_).push_back(near);
+        for (std::uint32_t part_a = 0; part_a < hulls_.part_count(near.a); ++part_a) {
+            for (std::uint32_t part_b = 0; part_b < hulls_.part_count(near.b); ++part_b) {
+                (is_fixed(near.b) ? with_fixed_ : near_).push_back(near);
+                (is_fixed(near.b) ? parts_with_fixed_ : hull_parts_).push_back({part_a, part_b});
+            }
+        }
     }
     first_hull_fixed_ = static_cast<std::uint32_t>(near_.size());
     near_.insert(near_.end(), with_fixed_.begin(), with_fixed_.end());
+    hull_parts_.insert(hull_parts_.end(), parts_with_fixed_.begin(), parts_with_fixed_.end());
     first_hull_wall_ = static_cast<std::uint32_t>(near_.size());
     for (auto const [body, edge] : walls.walls()) {
-        if (hulls_.is_one(body)) {
+        for (std::uint32_t part = 0; hulls_.is_one(body) && part < hulls_.part_count(body); ++part) {
             near_.push_back({.a = body, .b = edge, .law = law_between(disks_[body], wall_)});
+            hull_parts_.push_back({part, 0});
         }
     }
 }
 
-/// Symmetric in the two disks.
-std::uint64_t DiskContacts::things_of(std::uint32_t contact) const {
+/// Symmetric in the two bodies, with no impulse.
+DiskContacts::Pushing DiskContacts::named(std::uint32_t contact) const {
     auto const [a, b, law] = near_[contact];
     constexpr std::uint64_t walls = std::uint64_t{1} << 63U;
-    return is_wall(contact) ? walls | std::uint64_t{a} << 32U | b
-                            : std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+    if (is_wall(contact)) {
+        return {.things = walls | std::uint64_t{a} << 32U | b,
+                .parts = contact < first_hull_ ? 0 : parts(contact).a,
+                .impulse = 0.0F,
+                .of_hull = {}};
+    }
+    TouchingParts touching;
+    if (contact >= first_hull_) {
+        touching = parts(contact);
+    } else if (contact >= pair_count_) {
+        touching.b = fixed_part_[contact - pair_count_];
+    }
+    return {.things = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b),
+            .parts = a < b ? touching.a << 16U | touching.b : touching.b << 16U | touching.a,
+            .impulse = 0.0F,
+            .of_hull = {}};
 }
 
 void DiskContacts::keep_impulses() {
     pushing_.clear();
     for (std::uint32_t i = 0; i < first_hull_; ++i) {
         if (driven_impulse_[i] > 0.0F) {
-            pushing_.push_back({.things = things_of(i), .impulse = driven_impulse_[i], .of_hull = {}});
+            pushing_.push_back(named(i));
+            pushing_.back().impulse = driven_impulse_[i];
         }
     }
     for (std::uint32_t i = first_hull_; i < near_.size(); ++i) {
         HullImpulse const& impulse = hull_impulse_[i - first_hull_];
         if (impulse.parts[0].normal > 0.0F || impulse.parts[1].normal > 0.0F) {
-            pushing_.push_back({.things = things_of(i), .impulse = 0.0F, .of_hull = impulse});
+            pushing_.push_back(named(i));
+            pushing_.back().of_hull = impulse;
         }
     }
-    std::ranges::sort(pushing_, {}, &Pushing::things);
+    std::ranges::sort(pushing_, std::less{}, &Pushing::name);
 }
 
 void DiskContacts::give_impulses() {
     driven_impulse_.assign(first_hull_, 0.0F);
     hull_impulse_.assign(near_.size() - first_hull_, {});
     for (std::uint32_t i = 0; i < near_.size() && !pushing_.empty(); ++i) {
-        std::uint64_t const things = things_of(i);
-        auto const known = std::ranges::lower_bound(pushing_, things, {}, &Pushing::things);
-        if (known != pushing_.end() && known->things == things) {
+        auto const name = named(i).name();
+        auto const known = std::ranges::lower_bound(pushing_, name, std::less{}, &Pushing::name);
+        if (known != pushing_.end() && known->name() == name) {
             if (i < first_hull_) {
                 driven_impulse_[i] = known->impulse;
             } else {
@@ -168,7 +200,7 @@ std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t 
         return gap_to((*walls_)[fixed], point_mm);
     }
     if (hulls_.is_one(fixed)) {
-        return hulls_.gap_to(world, fixed, point_mm);
+        return hulls_.gap_to(world, fixed, fixed_part_[contact - pair_count_], point_mm);
     }
     return gap_to_centre(minimum_image(world, world.bodies.position_mm[fixed], point_mm));
 }
@@ -181,8 +213,9 @@ float DiskContacts::gap_of_hull_mm(World const& world, std::uint32_t contact) co
     }
     // About the centre of `a`, which may be on the other side of a seam.
     Vec2 const to_b_mm = minimum_image(world, place_mm, world.bodies.position_mm[b]);
-    return gap_between_mm(placed(hulls_.of(world, a), {}, world.bodies.heading_dir[a]),
-                          placed(hulls_.of(world, b), to_b_mm, world.bodies.heading_dir[b]));
+    auto const [part_a, part_b] = parts(contact);
+    return gap_between_mm(placed(hulls_.of(world, a, part_a), {}, world.bodies.heading_dir[a]),
+                          placed(hulls_.of(world, b, part_b), to_b_mm, world.bodies.heading_dir[b]));
 }
 
 }  // namespace pogosim

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "physics/assemblies.hpp"
@@ -26,6 +27,12 @@ struct HullImpulse {
         std::uint32_t features = 0;  // see ManifoldPoint
     };
     std::array<Part, 2> parts;
+};
+
+/// The parts of the two bodies of a contact, see Hulls; 0 unless they are compounds.
+struct TouchingParts {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
 };
 
 /// Constants of a contact. The masses are those of disks.
@@ -98,6 +105,9 @@ public:
     std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
     std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
 
+    /// The same for their parts: a contact is between two of them.
+    TouchingParts const& parts(std::uint32_t contact) const { return hull_parts_[contact - first_hull_]; }
+
     Hulls const& hulls() const { return hulls_; }
 
     Disk const& disk(std::uint32_t body) const { return disks_[body]; }
@@ -117,8 +127,11 @@ private:
     /// A contact with an impulse, identified by its two things.
     struct Pushing {
         std::uint64_t things;
+        std::uint32_t parts;
         float impulse;
         HullImpulse of_hull;
+
+        std::pair<std::uint64_t, std::uint32_t> name() const { return {things, parts}; }
     };
 
     bool may_collide(Assemblies const& assemblies, std::uint32_t a, std::uint32_t b) const {
@@ -126,7 +139,7 @@ private:
     }
     void add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls);
     void add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm);
-    std::uint64_t things_of(std::uint32_t contact) const;
+    Pushing named(std::uint32_t contact) const;
     void keep_impulses();
     void give_impulses();
 
@@ -135,11 +148,14 @@ private:
     std::vector<Disk> disks_;
     Disk wall_;
     std::vector<NearContact> near_;
-    std::vector<NearContact> with_fixed_;  // scratch, while near_ is rebuilt
+    std::vector<std::uint32_t> fixed_part_;  // of each contact of a disk with a fixed body
+    std::vector<TouchingParts> hull_parts_;  // of each contact of a movable hull
+    std::vector<NearContact> with_fixed_;    // scratch, while near_ is rebuilt
     std::vector<float> driven_impulse_;
     std::vector<HullImpulse> hull_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
-    std::vector<Pushing> pushing_;  // scratch, while near_ is rebuilt
+    std::vector<TouchingParts> parts_with_fixed_;  // the same
+    std::vector<Pushing> pushing_;                 // the same
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
     std::uint32_t first_hull_ = 0;

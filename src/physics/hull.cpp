@@ -203,6 +203,7 @@ Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead) {
     Hull result;
     result.count = hull.count;
     result.radius_mm = hull.radius_mm;
+    result.centre_mm = place_mm + rotate(hull.centre_mm, ahead);
     for (std::uint32_t k = 0; k < hull.count; ++k) {
         result.corner_mm[k] = place_mm + rotate(hull.corner_mm[k], ahead);
         result.outwards[k] = rotate(hull.outwards[k], ahead);
@@ -236,7 +237,7 @@ Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
     return touches;
 }
 
-Manifold touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm) {
+Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm) {
     Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
     float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
     Furthest const from_hull = [&] {
@@ -248,7 +249,7 @@ Manifold touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, fl
         pushes_from_corner(side, -hull.outwards[from_hull.side])) {
         return touches_with_corner(hull, side, reach_mm);
     }
-    if (dot(centre_mm - side.from_mm, side.normal) < 0.0F || above_edge_mm >= reach_mm + hull.radius_mm) {
+    if (dot(hull.centre_mm - side.from_mm, side.normal) < 0.0F || above_edge_mm >= reach_mm + hull.radius_mm) {
         return {};
     }
     std::uint32_t const against = side_against(hull, side.normal);

@@ -12,12 +12,14 @@ namespace pogosim {
 
 inline constexpr std::uint32_t kMostCorners = 8;
 
-/// All points within `radius_mm` of a convex polygon. With one corner it is a disk, with two a capsule.
+/// All points within `radius_mm` of a convex polygon. A disk has one corner. Where the polygon has no area, it has four
+/// sides all the same, some without length, which face every way.
 struct Hull {
     std::array<Vec2, kMostCorners> corner_mm{};  // clockwise on the screen
     std::array<Vec2, kMostCorners> outwards{};   // unit vector, of the side from this corner to the next one
     std::uint32_t count = 0;
     float radius_mm = 0.0F;
+    Vec2 centre_mm;  // a point of it, which is never behind a wall that it can touch
 
     Vec2 next_corner_mm(std::uint32_t side) const { return corner_mm[side + 1 < count ? side + 1 : 0]; }
 };
@@ -43,9 +45,8 @@ struct Manifold {
 /// as in E. Catto, "Contact manifolds", Game Developers Conference 2007.
 Manifold touches_of(Hull const& a, Hull const& b, float reach_mm);
 
-/// The touches of a hull with an edge of a wall. `centre_mm`: of the hull. A hull whose centre is behind the edge does
-/// not touch it, see gap_to().
-Manifold touches_with(Hull const& hull, Vec2 centre_mm, WallSide const& side, float reach_mm);
+/// The touches of a hull with an edge of a wall. A hull whose centre is behind the edge does not touch it, see gap_to().
+Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm);
 
 /// The distance between two hulls, not both of which are disks; negative when they overlap: by how much at least.
 float gap_between_mm(Hull const& a, Hull const& b);

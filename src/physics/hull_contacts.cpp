@@ -22,33 +22,42 @@ void HullContacts::clear() {
 }
 
 std::uint32_t HullContacts::hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body,
-                                    std::uint32_t mover, std::span<Mover const> movers) {
+                                    std::uint32_t part, std::uint32_t mover, std::span<Mover const> movers) {
+    auto const next = static_cast<std::uint32_t>(hulls_.size());
+    if (mover == kStill) {
+        Vec2 const place_mm = world.bodies.position_mm[body];
+        Hull const own = contacts.hulls().of(world, body, part);
+        hulls_.push_back({.own = own,
+                          .now = placed(own, place_mm, world.bodies.heading_dir[body]),
+                          .mover = mover,
+                          .place_mm = place_mm});
+        return next;
+    }
     hull_of_mover_.resize(std::max(hull_of_mover_.size(), movers.size()));
     std::uint32_t const known = hull_of_mover_[mover];
-    if (mover != kStill && known < hulls_.size() && hulls_[known].mover == mover) {
-        return known;
+    if (known < hulls_.size() && hulls_[known].mover == mover) {
+        return known + part;
     }
-    hull_of_mover_[mover] = static_cast<std::uint32_t>(hulls_.size());
-    Placed placed{.own = contacts.hulls().of(world, body), .now = {}, .mover = mover, .place_mm = {}};
-    if (mover == kStill) {
-        placed.place_mm = world.bodies.position_mm[body];
-        placed.now = pogosim::placed(placed.own, placed.place_mm, world.bodies.heading_dir[body]);
-    } else {
-        placed.place_mm = movers[mover].position_mm;
+    hull_of_mover_[mover] = next;
+    for (std::uint32_t k = 0; k < contacts.hulls().part_count(body); ++k) {
+        hulls_.push_back({.own = contacts.hulls().of(world, body, k),
+                          .now = {},
+                          .mover = mover,
+                          .place_mm = movers[mover].position_mm});
     }
-    hulls_.push_back(placed);
-    return static_cast<std::uint32_t>(hulls_.size()) - 1;
+    return next + part;
 }
 
 void HullContacts::add(World const& world, DiskContacts const& contacts, std::uint32_t index, std::uint32_t a,
                        std::uint32_t b, std::span<Mover const> movers) {
     NearContact const& near = contacts.near()[index];
+    TouchingParts const& parts = contacts.parts(index);
     bool const is_wall = contacts.is_wall(index);
     Contact contact{.a = a,
                     .b = b,
                     .index = index,
-                    .hull_a = hull_of(world, contacts, near.a, a, movers),
-                    .hull_b = is_wall ? kNone : hull_of(world, contacts, near.b, b, movers),
+                    .hull_a = hull_of(world, contacts, near.a, parts.a, a, movers),
+                    .hull_b = is_wall ? kNone : hull_of(world, contacts, near.b, parts.b, b, movers),
                     .friction = near.law.friction,
                     .restitution = near.law.restitution,
                     .seam_mm = {}};
@@ -63,7 +72,7 @@ void HullContacts::add(World const& world, DiskContacts const& contacts, std::ui
 Manifold HullContacts::touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const {
     Placed const& a = hulls_[contact.hull_a];
     if (contact.hull_b == kNone) {
-        return touches_with(a.now, a.place_mm, contacts.wall_side(contact.index), reach_mm);
+        return touches_with(a.now, contacts.wall_side(contact.index), reach_mm);
     }
     Hull const& b = hulls_[contact.hull_b].now;
     if (contact.seam_mm == Vec2{}) {

@@ -72,15 +72,15 @@ private:
         Vec2 place_mm;        // of its origin
     };
 
-    std::uint32_t hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body, std::uint32_t mover,
-                          std::span<Mover const> movers);
+    std::uint32_t hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body, std::uint32_t part,
+                          std::uint32_t mover, std::span<Mover const> movers);
     Manifold touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const;
     bool measure(Contact& contact, Manifold const& touches, std::span<Mover const> movers, Times const& times) const;
     static float solve(Contact const& contact, Point& point, std::span<Mover> movers, bool pushes);
 
     std::vector<Contact> contacts_;
     std::vector<Placed> hulls_;
-    std::vector<std::uint32_t> hull_of_mover_;  // in hulls_; valid only if that hull is the mover's
+    std::vector<std::uint32_t> hull_of_mover_;  // its first part in hulls_; valid only if that hull is the mover's
 };
 
 }  // namespace pogosim

@@ -12,24 +12,31 @@ namespace {
 // The search for the first touch ends at this distance, or after this many steps along the motion.
 constexpr float kTouchMm = 0.01F;
 constexpr int kMostSteps = 64;
-constexpr float kLeastAreaMm2 = 1e-12F;
 
 }  // namespace
 
 Hulls::Hulls(World const& world) {
     Bodies const& bodies = world.bodies;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        if (bodies.shape[i].kind != ShapeKind::disk) {
-            place_.resize(bodies.size(), kNone);
-            place_[i] = static_cast<std::uint32_t>(hulls_.size());
-            hulls_.push_back(hull_of(outline(bodies.shape[i])));
+        Shape const& shape = bodies.shape[i];
+        if (shape.kind == ShapeKind::disk) {
+            continue;
+        }
+        parts_.resize(bodies.size());
+        std::vector<RoundedPolygon> const parts = convex_parts(shape);
+        parts_[i] = {static_cast<std::uint32_t>(hulls_.size()), static_cast<std::uint32_t>(parts.size())};
+        for (RoundedPolygon const& part : parts) {
+            hulls_.push_back(hull_of(part));
+            // The position correction keeps the origin of a body on the free side of walls. That of a compound may be
+            // between its parts.
+            hulls_.back().centre_mm = parts.size() > 1 ? moments_of(part).centre_mm() : Vec2{};
         }
     }
 }
 
-Hull Hulls::of(World const& world, std::uint32_t body) const {
+Hull Hulls::of(World const& world, std::uint32_t body, std::uint32_t part) const {
     if (is_one(body)) {
-        return hulls_[place_[body]];
+        return hulls_[parts_[body].first + part];
     }
     Hull disk;
     disk.count = 1;
@@ -37,7 +44,7 @@ Hull Hulls::of(World const& world, std::uint32_t body) const {
     return disk;
 }
 
-Gap Hulls::gap_to(World const& world, std::uint32_t body, Vec2 point_mm) const {
+Gap Hulls::gap_to(World const& world, std::uint32_t body, std::uint32_t part, Vec2 point_mm) const {
     Vec2 const ahead = world.bodies.heading_dir[body];
     Vec2 const aside{-ahead.y, ahead.x};
     Vec2 const way_mm = minimum_image(world, world.bodies.position_mm[body], point_mm);
@@ -45,7 +52,7 @@ Gap Hulls::gap_to(World const& world, std::uint32_t body, Vec2 point_mm) const {
     // From the side with the largest signed distance, or, in front of a corner, from the nearest point of a side.
     Gap inside{-std::numeric_limits<float>::max(), {}};
     Gap outside{std::numeric_limits<float>::max(), {}};
-    Hull const& hull = hulls_[place_[body]];
+    Hull const& hull = hulls_[parts_[body].first + part];
     for (std::uint32_t i = 0; i < hull.count; ++i) {
         Vec2 const outwards = hull.outwards[i];
         Vec2 const along{-outwards.y, outwards.x};
@@ -63,18 +70,18 @@ Gap Hulls::gap_to(World const& world, std::uint32_t body, Vec2 point_mm) const {
         }
     }
     Gap const& gap = inside.distance_mm > 0.0F ? outside : inside;
-    return {gap.distance_mm, gap.normal.x * ahead + gap.normal.y * aside};
+    return {gap.distance_mm - hull.radius_mm, gap.normal.x * ahead + gap.normal.y * aside};
 }
 
 /// Sphere tracing, in steps of the distance to the nearest side: J. C. Hart, "Sphere tracing", The Visual Computer 12
 /// (1996) 527.
-float Hulls::fraction_to_touch(World const& world, std::uint32_t body, Vec2 from_mm, Vec2 motion_mm,
+float Hulls::fraction_to_touch(World const& world, std::uint32_t body, std::uint32_t part, Vec2 from_mm, Vec2 motion_mm,
                                float radius_mm) const {
     float const motion_length_mm = length(motion_mm);
     float gone_mm = 0.0F;
     for (int step = 0; step < kMostSteps && gone_mm < motion_length_mm; ++step) {
         Vec2 const place_mm = from_mm + (gone_mm / motion_length_mm) * motion_mm;
-        float const free_mm = gap_to(world, body, place_mm).distance_mm - radius_mm;
+        float const free_mm = gap_to(world, body, part, place_mm).distance_mm - radius_mm;
         if (free_mm < kTouchMm) {
             return step == 0 ? 1.0F : gone_mm / motion_length_mm;
         }
@@ -83,36 +90,32 @@ float Hulls::fraction_to_touch(World const& world, std::uint32_t body, Vec2 from
     return 1.0F;
 }
 
-Hull hull_of(Polygon const& corners_mm) {
-    assert(corners_mm.size() <= kMostCorners);
+Hull hull_of(RoundedPolygon const& part) {
+    assert(!part.corners_mm.empty() && part.corners_mm.size() <= kMostCorners);
     Hull hull;
-    hull.count = static_cast<std::uint32_t>(corners_mm.size());
+    hull.radius_mm = part.radius_mm;
+    Polygon corners = part.corners_mm;
+    bool const has_core = corners.size() > 2;
+    if (!has_core) {  // one side along the core, and back on the other side, with a side across at each end
+        Vec2 const from = corners.front();
+        Vec2 const to = corners.back();
+        corners = {from, to, to, from};
+    }
+    hull.count = static_cast<std::uint32_t>(corners.size());
     for (std::uint32_t k = 0; k < hull.count; ++k) {
-        Vec2 const way_mm = corners_mm[k + 1 < hull.count ? k + 1 : 0] - corners_mm[k];
+        Vec2 const way_mm = corners[k + 1 < hull.count ? k + 1 : 0] - corners[k];
         // The square of a tiny length would be 0.
         float const squared_mm2 = squared_length(way_mm);
         float const length_mm = squared_mm2 > 0.0F ? std::sqrt(squared_mm2) : exact::hypot(way_mm.x, way_mm.y);
         Vec2 const along = length_mm > 0.0F ? (1.0F / length_mm) * way_mm : Vec2{1.0F, 0.0F};
-        hull.corner_mm[k] = corners_mm[k];
+        hull.corner_mm[k] = corners[k];
         hull.outwards[k] = {along.y, -along.x};
     }
-    return hull;
-}
-
-/// Triangles about the origin, which is inside.
-HullMass mass_of(Hull const& hull) {
-    float area_mm2 = 0.0F;
-    float moment_mm4 = 0.0F;
-    for (std::uint32_t k = 0; k < hull.count; ++k) {
-        Vec2 const a = hull.corner_mm[k];
-        Vec2 const b = hull.next_corner_mm(k);
-        float const triangle_mm2 = 0.5F * cross(a, b);
-        area_mm2 += triangle_mm2;
-        moment_mm4 += triangle_mm2 * (dot(a, a) + dot(a, b) + dot(b, b)) / 6.0F;
+    for (std::uint32_t k = 1; k < hull.count && !has_core; ++k) {
+        Vec2 const before = hull.outwards[k - 1];
+        hull.outwards[k] = {-before.y, before.x};
     }
-    // Those of specks would be rounded to 0.
-    return {std::max(area_mm2, kLeastAreaMm2),
-            std::max(moment_mm4, kLeastAreaMm2 * kLeastAreaMm2) / std::max(area_mm2, kLeastAreaMm2)};
+    return hull;
 }
 
 }  // namespace pogosim

@@ -19,28 +19,8 @@ constexpr float kThinnestMarkPx = 1.0F;
 constexpr float kGlowReach = 0.9F;  // beyond the rim
 constexpr float kGlowOpacity = 0.55F;
 constexpr float kLateralLed = 0.3F;
+constexpr int kCornersOfATurn = 64;
 constexpr float kLineOpacity = 0.45F;  // of the line through a membrane
-
-/// Distance from the origin to the border in a direction, a unit vector.
-float reach_mm(Shape const& shape, Vec2 towards) {
-    if (shape.kind == ShapeKind::disk) {
-        return shape.radius_mm;
-    }
-    Polygon const corners = outline(shape);
-    float reach = 0.0F;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        Vec2 const a = corners[i];
-        Vec2 const edge = corners[i + 1 == corners.size() ? 0 : i + 1] - a;
-        float const turn = cross(towards, edge);
-        if (std::abs(turn) > 1e-9F) {
-            float const share = cross(a, towards) / turn;  // along the edge
-            if (share >= 0.0F && share <= 1.0F) {
-                reach = std::max(reach, cross(a, edge) / turn);
-            }
-        }
-    }
-    return reach;
-}
 
 /// Pose and look of one rigid object.
 struct Figure {
@@ -91,17 +71,18 @@ void draw_shape(Scene const& scene, Figure const& figure, Vec2 at_mm, float outw
         scene.canvas.disk(centre, scene.to_pixels(figure.shape.radius_mm) + outwards_px, colour);
         return;
     }
-    Polygon corners = outline(inset(figure.shape, -outwards_px / scene.camera.scale_px_mm));
-    for (Vec2& corner : corners) {
-        corner = centre + scene.camera.scale_px_mm * rotate(corner, figure.axis);
+    for (Polygon& corners : outlines(inset(figure.shape, -outwards_px / scene.camera.scale_px_mm), kCornersOfATurn)) {
+        for (Vec2& corner : corners) {
+            corner = centre + scene.camera.scale_px_mm * rotate(corner, figure.axis);
+        }
+        scene.canvas.polygon(corners, colour);
     }
-    scene.canvas.polygon(corners, colour);
 }
 
 void draw_glow(Scene const& scene, Figure const& figure) {
-    float const reach = figure.radius_mm + kGlowReach * inner_radius(figure.shape);
-    scene.for_each_image(figure.position_mm, reach, [&](Vec2 at_mm) {
-        scene.canvas.glow(scene.to_pixels(at_mm), scene.to_pixels(reach), with_opacity(figure.colour, kGlowOpacity),
+    float const glow_mm = figure.radius_mm + kGlowReach * inner_radius(figure.shape);
+    scene.for_each_image(figure.position_mm, glow_mm, [&](Vec2 at_mm) {
+        scene.canvas.glow(scene.to_pixels(at_mm), scene.to_pixels(glow_mm), with_opacity(figure.colour, kGlowOpacity),
                           scene.floor);
     });
 }
@@ -123,7 +104,7 @@ void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, flo
         static Vec2 const eighth_of_a_turn = direction(0.25F * std::numbers::pi_v<float>);
         Vec2 const side = figure.leds_turned ? rotate(part.direction, eighth_of_a_turn) : part.direction;
         Vec2 const outwards = rotate(side, figure.axis);
-        Vec2 const centre = scene.to_pixels(at_mm + reach_mm(figure.shape, side) * outwards);
+        Vec2 const centre = scene.to_pixels(at_mm + reach(figure.shape, side) * outwards);
         scene.canvas.half_disk(centre, radius_px + edge_px, -outwards, palette::kEdge);
         scene.canvas.half_disk(centre, radius_px, -outwards, led_colour(led));
     }
@@ -139,9 +120,9 @@ float edge_of(Scene const& scene, Figure const& figure) {
 void draw_mark(Scene const& scene, Figure const& figure, Vec2 at_mm) {
     if (figure.has_axis && edge_of(scene, figure) > 0.0F) {
         float const size_px = scene.to_pixels(inner_radius(figure.shape));
-        float const reach = reach_mm(figure.shape, {1.0F, 0.0F});
-        scene.canvas.line(scene.to_pixels(at_mm + 0.25F * reach * figure.axis),
-                          scene.to_pixels(at_mm + 0.95F * reach * figure.axis),
+        float const ahead_mm = reach(figure.shape, {1.0F, 0.0F});
+        scene.canvas.line(scene.to_pixels(at_mm + 0.25F * ahead_mm * figure.axis),
+                          scene.to_pixels(at_mm + 0.95F * ahead_mm * figure.axis),
                           std::max(kMark * size_px, kThinnestMarkPx), Cap::butt, contrast_to(figure.colour));
     }
 }

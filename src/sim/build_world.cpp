@@ -148,7 +148,9 @@ Outline outline_of(World const& world, Object const& object, ObjectSpec const& s
     if (spec.shape.kind == ShapeKind::arena) {
         line.polygons = world.arena.polygons;
     } else if (!spec.membrane) {
-        line.polygons = {moved(outline(spec.shape), placement.position_mm, placement.heading_rad)};
+        for (Polygon const& part : outlines(spec.shape)) {
+            line.polygons.push_back(moved(part, placement.position_mm, placement.heading_rad));
+        }
     }
     return line;
 }

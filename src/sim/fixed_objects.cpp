@@ -78,9 +78,10 @@ void warn_of_overlaps(Scenario const& scenario, World const& world) {
         for (auto const& [k, depth_mm] : finder.with_earlier(i)) {
             StandingObject const& other = objects[k];
             if (depth_mm > kDeepShare * std::min(own_mm, half_thickness_mm(other.object->spec))) {
-                findings.add(objects[i], other.object,
-                             fmt::format("overlaps {} by {:.1f} mm",
-                                         other.object == &object ? "another one" : other.obstacle.name, depth_mm));
+                findings.add(
+                    objects[i], other.object,
+                    fmt::format("overlaps {} by {:.1f} mm",
+                                other.object == &object ? "another one" : other.obstacles.front().name, depth_mm));
             }
         }
         float const depth_mm = finder.into_walls_mm(i);

@@ -81,25 +81,7 @@ Vec2 out_of_frame(World const& world, std::uint32_t body, Vec2 offset) {
 Vec2 rim_point(Shape const& shape, Vec2 towards) {
     float const distance = length(towards);
     Vec2 const way = distance > 0.0F ? (1.0F / distance) * towards : Vec2{1.0F, 0.0F};
-    if (shape.kind == ShapeKind::disk) {
-        return shape.radius_mm * way;
-    }
-    Polygon const corners = outline(shape);
-    float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        Vec2 const from = corners[i];
-        Vec2 const side = corners[(i + 1) % corners.size()] - from;
-        float const turn = cross(way, side);
-        if (turn != 0.0F) {
-            float const along_way = cross(from, side) / turn;
-            float const along_side = cross(from, way) / turn;
-            constexpr float rounding = 1.0e-5F;
-            if (along_way > 0.0F && along_side >= -rounding && along_side <= 1.0F + rounding) {
-                nearest = std::min(nearest, along_way);
-            }
-        }
-    }
-    return nearest * way;
+    return reach(shape, way) * way;
 }
 
 /// Neighbours of a point among members.

@@ -84,8 +84,8 @@ void check_position(Scenario const& scenario, World const& world, ObjectConfig c
     if (!stands_inside(world, centre_mm)) {
         fail_outside(scenario, world, object, centre_mm);
     }
-    if (Polygon const corners = outline(object.spec.shape); !corners.empty()) {
-        Vec2 const size_mm = bounding_box(corners).size();
+    if (!is_everywhere(object.spec.shape)) {
+        Vec2 const size_mm = bounding_box(object.spec.shape).size();
         Vec2 const room_mm = world.arena.bounds.size();
         if (size_mm.x > room_mm.x || size_mm.y > room_mm.y) {
             fail_too_large(scenario, world, object, std::max(size_mm.x, size_mm.y));
@@ -230,11 +230,13 @@ std::vector<std::vector<Placement>> place_objects(Scenario const& scenario, Worl
     }
 
     auto const add_obstacles = [&](std::size_t i) {
-        for (Obstacle& obstacle : obstacles_of(scenario.objects[i], poses[i])) {
-            if (world.periodic) {
-                std::ranges::move(images_across(world.arena.bounds, obstacle), std::back_inserter(obstacles));
+        for (Placement const& pose : poses[i]) {
+            for (Obstacle& obstacle : obstacles_of(scenario.objects[i], pose)) {
+                if (world.periodic) {
+                    std::ranges::move(images_across(world.arena.bounds, obstacle), std::back_inserter(obstacles));
+                }
+                obstacles.push_back(std::move(obstacle));
             }
-            obstacles.push_back(std::move(obstacle));
         }
     };
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {

@@ -10,43 +10,26 @@
 
 namespace pogosim {
 
-std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Placement> const& poses) {
-    std::vector<Obstacle> obstacles;
+std::vector<Obstacle> obstacles_of(ObjectConfig const& object, Placement const& pose) {
     std::string const name = fmt::format("'{}'", object.category);
-    for (Placement const& pose : poses) {
-        if (object.spec.membrane) {
-            obstacles.push_back({.name = name,
-                                 .line = membrane_line(object.spec, pose),
-                                 .half_thickness_mm = half_thickness_mm(*object.spec.membrane),
-                                 .solid = false});
-        } else {
-            obstacles.push_back(solid_obstacle(name, object.spec.shape, pose.position_mm, pose.heading_rad));
-        }
+    if (!object.spec.membrane) {
+        return solid_obstacles(name, object.spec.shape, pose.position_mm, pose.heading_rad);
     }
-    return obstacles;
+    return {{.name = name,
+             .line = membrane_line(object.spec, pose),
+             .half_thickness_mm = half_thickness_mm(*object.spec.membrane),
+             .solid = false}};
 }
 
 void add_standing(ObjectConfig const& object, std::vector<Placement> const& poses,
                   std::vector<StandingObject>& objects) {
-    std::vector<Obstacle> const obstacles = obstacles_of(object, poses);
-    float const radius_mm = outer_radius_mm(object.spec);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        objects.push_back({&object, poses[i].position_mm, radius_mm, obstacles[i]});
+    for (Placement const& pose : poses) {
+        objects.push_back({&object, pose.position_mm, outer_radius_mm(object.spec), obstacles_of(object, pose)});
     }
 }
 
 float half_thickness_mm(ObjectSpec const& spec) {
-    if (spec.membrane) {
-        return half_thickness_mm(*spec.membrane);
-    }
-    switch (spec.shape.kind) {
-        case ShapeKind::rectangle:
-            return 0.5F * std::min(spec.shape.width_mm, spec.shape.height_mm);
-        case ShapeKind::triangle:
-            return 0.5F * bounding_radius(spec.shape);
-        default:
-            return bounding_radius(spec.shape);
-    }
+    return spec.membrane ? half_thickness_mm(*spec.membrane) : inner_radius(spec.shape);
 }
 
 OverlapFinder::OverlapFinder(std::vector<StandingObject> const& objects, World const& world)
@@ -79,20 +62,34 @@ std::vector<Overlap> OverlapFinder::with_earlier(std::size_t object) const {
 }
 
 float OverlapFinder::depth_mm(StandingObject const& one, StandingObject const& other) const {
-    float depth = overlap_mm(one.obstacle, other.obstacle);
-    if (world_.periodic) {
-        for (Obstacle const& image : images_across(world_.arena.bounds, other.obstacle)) {
-            depth = std::max(depth, overlap_mm(one.obstacle, image));
+    float depth = 0.0F;
+    for (Obstacle const& a : one.obstacles) {
+        for (Obstacle const& b : other.obstacles) {
+            depth = std::max(depth, depth_mm(a, b));
         }
-        for (Obstacle const& image : images_across(world_.arena.bounds, one.obstacle)) {
-            depth = std::max(depth, overlap_mm(image, other.obstacle));
+    }
+    return depth;
+}
+
+float OverlapFinder::depth_mm(Obstacle const& one, Obstacle const& other) const {
+    float depth = overlap_mm(one, other);
+    if (world_.periodic) {
+        for (Obstacle const& image : images_across(world_.arena.bounds, other)) {
+            depth = std::max(depth, overlap_mm(one, image));
+        }
+        for (Obstacle const& image : images_across(world_.arena.bounds, one)) {
+            depth = std::max(depth, overlap_mm(image, other));
         }
     }
     return depth;
 }
 
 float OverlapFinder::into_walls_mm(std::size_t object) const {
-    return world_.periodic ? 0.0F : overlap_mm(objects_[object].obstacle, world_.arena);
+    float depth = 0.0F;
+    for (Obstacle const& part : objects_[object].obstacles) {
+        depth = world_.periodic ? 0.0F : std::max(depth, overlap_mm(part, world_.arena));
+    }
+    return depth;
 }
 
 }  // namespace pogosim

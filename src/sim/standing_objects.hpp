@@ -14,12 +14,12 @@ namespace pogosim {
 struct StandingObject {
     ObjectConfig const* object;
     Vec2 position_mm;
-    float radius_mm;  // of the disk around it
-    Obstacle obstacle;
+    float radius_mm;                  // of the disk around it
+    std::vector<Obstacle> obstacles;  // its parts
 };
 
-/// One obstacle for each of these poses of a tangible entry: a rigid body is solid, a membrane encloses free space.
-std::vector<Obstacle> obstacles_of(ObjectConfig const& object, std::vector<Placement> const& poses);
+/// An object of a tangible entry at a pose: the parts of a rigid body are solid, a membrane encloses free space.
+std::vector<Obstacle> obstacles_of(ObjectConfig const& object, Placement const& pose);
 
 /// Appends the objects of a tangible entry at these poses.
 void add_standing(ObjectConfig const& object, std::vector<Placement> const& poses,
@@ -47,6 +47,7 @@ public:
 
 private:
     float depth_mm(StandingObject const& one, StandingObject const& other) const;
+    float depth_mm(Obstacle const& one, Obstacle const& other) const;
 
     std::vector<StandingObject> const& objects_;
     World const& world_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "geometry/polygon.hpp"
 #include "geometry/shape.hpp"
@@ -13,19 +14,13 @@ namespace {
 /// A body that its motors press against something bounces back by up to this distance at each tick.
 constexpr float kBounceMm = 1.5F;
 
-/// A body as a polygon with a margin: a disk is its centre with its radius as margin.
-struct Solid {
-    Polygon corners;
-    float margin_mm = 0.0F;
-};
-
-Solid solid_of(World const& world, std::uint32_t body) {
+std::vector<RoundedPolygon> parts_of(World const& world, std::uint32_t body) {
     Bodies const& bodies = world.bodies;
-    Vec2 const centre_mm = bodies.position_mm[body];
-    if (bodies.shape[body].kind == ShapeKind::disk) {
-        return {{centre_mm}, bodies.radius_mm[body]};
+    std::vector<RoundedPolygon> parts = convex_parts(bodies.shape[body]);
+    for (RoundedPolygon& part : parts) {
+        part = moved(part, bodies.position_mm[body], bodies.heading_rad[body]);
     }
-    return {moved(outline(bodies.shape[body]), centre_mm, bodies.heading_rad[body])};
+    return parts;
 }
 
 /// For outlines that do not cross: the smallest distance is between a corner of one and the other outline.
@@ -41,9 +36,11 @@ float distance_between(Polygon const& a, Polygon const& b, Vec2 shift_of_b) {
 }
 
 bool touch_walls(World const& world, std::uint32_t body, float gap_mm) {
-    Solid const solid = solid_of(world, body);
+    std::vector<RoundedPolygon> const parts = parts_of(world, body);
     return std::ranges::any_of(world.arena.polygons, [&](Polygon const& wall) {
-        return distance_between(solid.corners, wall, {}) - solid.margin_mm <= gap_mm;
+        return std::ranges::any_of(parts, [&](RoundedPolygon const& part) {
+            return distance_between(part.corners_mm, wall, {}) - part.radius_mm <= gap_mm;
+        });
     });
 }
 
@@ -54,10 +51,16 @@ bool touch(World const& world, std::uint32_t a, std::uint32_t b, float gap_mm) {
     if (!(squared_length(way_mm) <= reach_mm * reach_mm)) {
         return false;
     }
-    Solid const first = solid_of(world, a);
-    Solid const second = solid_of(world, b);
     Vec2 const shift_mm = bodies.position_mm[a] + way_mm - bodies.position_mm[b];
-    return distance_between(first.corners, second.corners, shift_mm) - first.margin_mm - second.margin_mm <= gap_mm;
+    for (RoundedPolygon const& one : parts_of(world, a)) {
+        for (RoundedPolygon const& other : parts_of(world, b)) {
+            float const margins_mm = one.radius_mm + other.radius_mm;
+            if (distance_between(one.corners_mm, other.corners_mm, shift_mm) - margins_mm <= gap_mm) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 }  // namespace

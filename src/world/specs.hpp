@@ -17,7 +17,7 @@
 namespace pogosim {
 
 /// The outline of a Pogobot: what a `pogobot` is without `geometry` and `radius`.
-inline constexpr Shape kPogobotShape{.kind = ShapeKind::disk, .radius_mm = 26.5F};
+inline Shape const kPogobotShape{.kind = ShapeKind::disk, .radius_mm = 26.5F};
 
 /// Rigid-body parameters.
 struct BodySpec {

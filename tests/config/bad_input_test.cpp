@@ -289,14 +289,17 @@ TEST(BadInput, ObjectsNeedTypeAndGeometry) {
     EXPECT_EQ(load_error("objects:\n  a:\n"),
               "x.yaml:2: objects.a: the key 'type' is missing; expected " + type_names());
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobject}\n"),
-              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
+              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, capsule, "
+              "triangle, polygon, compound");
     EXPECT_EQ(load_error("objects:\n  a: {type: static_light}\n"),
               "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of global, arena, disk, rectangle, "
-              "triangle");
+              "capsule, triangle, polygon");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobject, geometry: ~}\n"),
-              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, triangle");
+              "x.yaml:2: objects.a: the key 'geometry' is missing; expected one of disk, rectangle, capsule, "
+              "triangle, polygon, compound");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobot, geometry: global}\n"),
-              "x.yaml:2: objects.a.geometry: expected one of disk, rectangle, triangle, found 'global'");
+              "x.yaml:2: objects.a.geometry: expected one of disk, rectangle, capsule, triangle, polygon, "
+              "compound, found 'global'");
     EXPECT_EQ(load_error("objects:\n  a: {type: [pogobot]}\n"),
               "x.yaml:2: objects.a.type: expected " + type_names() + ", found a list");
     EXPECT_EQ(load_error("objects:\n  a: {type: pogobt}\n"),

@@ -87,7 +87,8 @@ TEST(ObjectTypes, HaveTheShapesThatThePageSays) {
     for (ObjectType const& type : object_types()) {
         std::string const name(type.name);
         std::string const shape = row_of(rows, name)->shape;
-        for (char const* const geometry : {"disk", "rectangle", "triangle"}) {
+        for (char const* const geometry :
+             {"disk", "rectangle", "triangle", "capsule", "polygon, corners: [[0, 0], [40, 0], [20, 30]]"}) {
             EXPECT_NO_THROW((void)load(object(name, geometry))) << name << ", " << geometry;
         }
         bool const any = shape.starts_with("any");
@@ -101,6 +102,7 @@ TEST(ObjectTypes, HaveTheShapesThatThePageSays) {
         };
         EXPECT_EQ(may_be("arena"), any || shape.find("arena") != std::string::npos) << name;
         EXPECT_EQ(may_be("global"), any) << name;
+        EXPECT_EQ(may_be("compound, parts: [{geometry: disk}]"), shape == "solid") << name;
     }
 }
 

@@ -51,6 +51,7 @@ TEST(Reference, SaysWhatTheLoaderChecks) {
     EXPECT_EQ(key_of(groups, "pogobject", "radius").default_text, "10");
     EXPECT_TRUE(key_of(groups, "pogobject", "geometry").required);
     EXPECT_EQ(key_of(groups, "", "arena_surface").default_text, "1000000");
-    EXPECT_EQ(key_of(groups, "pogobot", "geometry").expected, "one of disk, rectangle, triangle");
+    EXPECT_EQ(key_of(groups, "pogobot", "geometry").expected,
+              "one of disk, rectangle, capsule, triangle, polygon, compound");
     EXPECT_EQ(key_of(groups, "static_light", "photo_start_value").default_text, "32767");
 }

@@ -25,7 +25,7 @@ Shape const kBox{.kind = ShapeKind::rectangle, .width_mm = 200.0F, .height_mm = 
 Shape const kTriangle{.kind = ShapeKind::triangle, .side_length_mm = 200.0F};
 
 Obstacle solid(Shape const& shape, Vec2 position_mm, float heading_rad = 0.0F) {
-    return solid_obstacle("'thing'", shape, position_mm, heading_rad);
+    return solid_obstacles("'thing'", shape, position_mm, heading_rad).front();
 }
 
 /// A ring of dots of radius 10 mm through this circle.

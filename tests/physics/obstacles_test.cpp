@@ -73,7 +73,7 @@ TEST(Hulls, AreAsFarAsTheirOutlinesFromEveryPoint) {
         std::uint32_t const body = i % 2 == 0 ? bar : wedge;
         Vec2 const point_mm =
             world.bodies.position_mm[body] + Vec2{random.uniform(-150.0F, 150.0F), random.uniform(-150.0F, 150.0F)};
-        Gap const gap = polygons.gap_to(world, body, point_mm);
+        Gap const gap = polygons.gap_to(world, body, 0, point_mm);
         EXPECT_NEAR(gap.distance_mm, signed_distance(world, body, point_mm), 1e-3F);
         EXPECT_NEAR(length(gap.normal), 1.0F, 1e-5F);
         // The normal leads to the outline and away from it.

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pogosim.scene import Lamp, Shape, light_levels, ray_names, read_categories, read_lamps, shape_of
+from pogosim.scene import Lamp, light_levels, ray_names, read_categories, read_lamps
+from pogosim.shapes import Shape, shape_of
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
 HOLE = np.array([[400.0, 400.0], [600.0, 400.0], [600.0, 600.0], [400.0, 600.0]])
@@ -153,3 +154,63 @@ def test_light_of_a_periodic_arena_is_that_of_the_nearest_image() -> None:
     seam = Lamp(Shape("disk", radius_mm=220.0), (5.0, 505.0), value=1000.0)
     assert light_levels([seam], [SQUARE], places, 0.0, period).tolist() == [1000.0, 1000.0, 0.0, 0.0]
     assert light_levels([seam], [SQUARE], places, 0.0).tolist() == [0.0, 1000.0, 0.0, 0.0]
+
+
+# ---- rounded and put together ----------------------------------------------------------------------------------------
+
+TRAY: dict[str, Any] = {
+    "type": "pogobject",
+    "geometry": "compound",
+    "parts": [
+        {"geometry": "rectangle", "body_width": 12, "body_height": 120},
+        {"geometry": "rectangle", "body_width": 68, "body_height": 12, "x": 40, "y": -54},
+        {"geometry": "rectangle", "body_width": 68, "body_height": 12, "x": 40, "y": 54, "angle_deg": 180},
+    ],
+}
+
+
+def area_of(corners: Any) -> float:
+    x, y = corners.T
+    return abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))) / 2.0
+
+
+def test_capsule_is_a_rectangle_with_half_circles() -> None:
+    shape = shape_of({"geometry": "capsule", "body_width": 60, "body_height": 20})
+    assert shape.bounding_radius_mm == pytest.approx(30.0)
+    assert shape.reach_mm == pytest.approx(30.0)
+    assert area_of(shape.outline()) == pytest.approx(800 + 100 * np.pi, rel=0.005)
+
+
+def test_corner_radius_cuts_corners_off() -> None:
+    box = {"geometry": "rectangle", "body_width": 60, "body_height": 40, "corner_radius": 5}
+    assert area_of(shape_of(box).outline()) == pytest.approx(2400 - (4 - np.pi) * 25, rel=0.001)
+    assert np.abs(shape_of(box).outline()).max(axis=0) == pytest.approx([30.0, 20.0])
+
+
+def test_polygon_has_its_centre_of_mass_in_the_origin() -> None:
+    shape = shape_of({"geometry": "polygon", "corners": [[100, 100], [160, 100], [160, 140], [100, 140]]})
+    assert shape.outline().mean(axis=0) == pytest.approx([0.0, 0.0])
+    assert shape.reach_mm == pytest.approx(30.0)
+
+
+def test_outline_of_a_compound_goes_around_its_parts() -> None:
+    shape = shape_of(TRAY)
+    assert len(shape.outline()) == 8
+    assert area_of(shape.outline()) == pytest.approx(12 * 120 + 2 * 68 * 12, rel=0.001)
+    inside = shape.holds(np.array([[0.0, 0.0], [40.0, 54.0], [-21.0, 0.0]]))
+    assert inside.tolist() == [False, True, True]
+    assert shape.reach_mm == 0.0  # its opening is ahead
+
+
+def test_hole_of_a_compound_stays_open() -> None:
+    bars = [{"geometry": "rectangle", "body_width": 100, "body_height": 10, "y": y} for y in (-45, 45)]
+    posts = [{"geometry": "rectangle", "body_width": 10, "body_height": 80, "x": x} for x in (-45, 45)]
+    shape = shape_of({"type": "passive_object", "geometry": "compound", "parts": bars + posts})
+    assert area_of(shape.outline()) == pytest.approx(100 * 100 - 80 * 80, rel=0.001)
+    assert shape.holds(np.array([[0.0, 0.0], [0.0, 45.0]])).tolist() == [False, True]
+
+
+@pytest.mark.parametrize("parts", [None, [], "x", [3], [{"geometry": "polygon"}]])
+def test_compound_that_cannot_be_read_is_a_disk(parts: Any) -> None:
+    shape = shape_of({"type": "passive_object", "geometry": "compound", "parts": parts})
+    assert np.isfinite(shape.outline()).all()

@@ -19,6 +19,7 @@
 #include "geometry/formation.hpp"
 #include "light/lighting.hpp"
 #include "physics/physics_engine.hpp"
+#include "support/shapes.hpp"
 #include "support/small_world.hpp"
 
 namespace {
@@ -110,13 +111,13 @@ World crowd(Arena const& arena, std::size_t count) {
     return world;
 }
 
-/// The same with boxes and wedges among them.
-World mixture(Arena const& arena, std::size_t count) {
+/// The same with others among them.
+World mixture(Arena const& arena, std::size_t count, std::vector<Shape> const& shapes) {
     World world = crowd(arena, count);
+    std::size_t next = 0;
     for (std::uint32_t i = 3; i < count; i += 5) {
-        Shape& shape = world.bodies.shape[i];
-        shape = i % 2 == 0 ? Shape{.kind = ShapeKind::triangle, .side_length_mm = 45.0F}
-                           : Shape{.kind = ShapeKind::rectangle, .width_mm = 45.0F, .height_mm = 20.0F};
+        Shape const& shape = shapes[next++ % shapes.size()];
+        world.bodies.shape[i] = shape;
         world.bodies.radius_mm[i] = bounding_radius(shape);
     }
     return world;
@@ -199,6 +200,13 @@ void move(std::string const& what, World world) {
             say(what, world.step + 1, hash);
         }
     }
+}
+
+void move_mixture(std::string const& name, std::vector<Shape> const& shapes) {
+    move(name, mixture(arena_of("annulus", 1.5e6), 250, shapes));
+    World torus = mixture(arena_of("square", 1.2e6), 250, shapes);
+    torus.periodic = true;
+    move(name + " periodic", std::move(torus));
 }
 
 void send(World& world, std::uint32_t robot) {
@@ -291,10 +299,11 @@ int main(int count, char** arguments) {
     World torus = crowd(arena_of("square", 1.2e6), 250);
     torus.periodic = true;
     move("crowd periodic", std::move(torus));
-    move("boxes and wedges", mixture(arena_of("annulus", 1.5e6), 250));
-    World mixed_torus = mixture(arena_of("square", 1.2e6), 250);
-    mixed_torus.periodic = true;
-    move("boxes and wedges periodic", std::move(mixed_torus));
+    move_mixture("boxes and wedges", {testing::rectangle(45.0F, 20.0F), testing::triangle(45.0F)});
+    move_mixture("other shapes",
+                 {testing::capsule(50.0F, 16.0F),
+                  testing::polygon({{-25.0F, 0.0F}, {-10.0F, -20.0F}, {18.0F, -12.0F}, {22.0F, 9.0F}, {-4.0F, 21.0F}}),
+                  testing::rounded(testing::triangle(45.0F), 6.0F), testing::tray(40.0F, 40.0F, 6.0F)});
     move("membranes", membranes(/*segments=*/false));
     move("membranes of segments", membranes(/*segments=*/true));
     move("links", lattice());

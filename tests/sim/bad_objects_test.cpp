@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/config_file.hpp"
@@ -54,13 +55,19 @@ void expect_refused(std::string const& type, std::vector<Case> const& cases) {
 TEST(BadObjects, NegativeAndZeroSizesAndMasses) {
     for (char const* const type :
          {"pogobot", "pogobject", "membrane", "rectmembrane", "active_object", "passive_object"}) {
+        bool const is_ring = std::string_view(type).ends_with("membrane");
+        std::string const shapes =
+            std::string(".geometry: expected one of disk, rectangle, capsule, triangle, polygon") +
+            (is_ring ? "" : ", compound");
+        std::string const blob = shapes + ", found 'blob'";
+        std::string const arena = shapes + ", found 'arena'";
         expect_refused(
             type, {{"geometry: disk, radius: 0", ".radius: expected a number from 0.001 to 1000000 (mm), found 0"},
                    {"geometry: disk, radius: -5", ".radius: expected a number from 0.001 to 1000000 (mm), found -5"},
                    {"geometry: disk, body_density: -1",
                     ".body_density: expected a number from 0 to 1000000000000000 (kg per (100 mm)^2), found -1"},
-                   {"geometry: blob", ".geometry: expected one of disk, rectangle, triangle, found 'blob'"},
-                   {"geometry: arena", ".geometry: expected one of disk, rectangle, triangle, found 'arena'"},
+                   {"geometry: blob", blob.c_str()},
+                   {"geometry: arena", arena.c_str()},
                    {"geometry: disk, x: 4", ".x: x without y; specify both or neither"}});
     }
 }
@@ -147,8 +154,9 @@ TEST(BadObjects, WallsOfAShapeNeedAPlace) {
         EXPECT_EQ(error_with(std::string("  it: {type: pogowall, geometry: ") + shape + "}\n"),
                   "x.yaml:7: objects.it: needs x and y: no formation places a wall of this geometry");
     }
-    expect_refused("pogowall", {{"geometry: global",
-                                 ".geometry: expected one of arena, disk, rectangle, triangle, found 'global'"}});
+    expect_refused("pogowall",
+                   {{"geometry: global",
+                     ".geometry: expected one of arena, disk, rectangle, capsule, triangle, polygon, found 'global'"}});
     EXPECT_EQ(error_with("  it: {type: pogowall, geometry: arena}\n"), "no error");
     EXPECT_EQ(error_with("  it: {type: pogowall, geometry: arena, x: 3, y: 4000}\n"), "no error");  // stays where it is
 }

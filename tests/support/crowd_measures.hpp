@@ -3,23 +3,30 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numbers>
+#include <limits>
+#include <vector>
 
+#include "physics/body_mass.hpp"
 #include "physics/hulls.hpp"
 #include "physics/physics_engine.hpp"
 #include "world/world.hpp"
 
 namespace pogosim::testing {
 
-inline Hull hull_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
-    Hull own;
-    if (shape.kind == ShapeKind::disk) {
-        own.count = 1;
-        own.radius_mm = shape.radius_mm;
-    } else {
-        own = hull_of(outline(shape));
+/// The parts of a shape at a pose.
+inline std::vector<Hull> hulls_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
+    std::vector<Hull> hulls;
+    for (RoundedPolygon const& part : convex_parts(shape)) {
+        Hull own = hull_of(part);
+        own.count = shape.kind == ShapeKind::disk ? 1 : own.count;
+        hulls.push_back(placed(own, place_mm, direction(heading_rad)));
     }
-    return placed(own, place_mm, direction(heading_rad));
+    return hulls;
+}
+
+/// The same of what is convex.
+inline Hull hull_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
+    return hulls_at(shape, place_mm, heading_rad).front();
 }
 
 inline float gap_mm(World const& world, std::uint32_t a, std::uint32_t b) {
@@ -28,8 +35,13 @@ inline float gap_mm(World const& world, std::uint32_t a, std::uint32_t b) {
     if (bodies.shape[a].kind == ShapeKind::disk && bodies.shape[b].kind == ShapeKind::disk) {
         return length(to_b_mm) - bodies.radius_mm[a] - bodies.radius_mm[b];
     }
-    return gap_between_mm(hull_at(bodies.shape[a], {}, bodies.heading_rad[a]),
-                          hull_at(bodies.shape[b], to_b_mm, bodies.heading_rad[b]));
+    float least_mm = std::numeric_limits<float>::max();
+    for (Hull const& one : hulls_at(bodies.shape[a], {}, bodies.heading_rad[a])) {
+        for (Hull const& other : hulls_at(bodies.shape[b], to_b_mm, bodies.heading_rad[b])) {
+            least_mm = std::min(least_mm, gap_between_mm(one, other));
+        }
+    }
+    return least_mm;
 }
 
 /// With each other, and with the walls of a rectangular arena.
@@ -44,12 +56,13 @@ inline float deepest_overlap_mm(World const& world) {
                 deepest_mm = std::max(deepest_mm, -gap_mm(world, a, b));
             }
         }
-        Hull const hull = hull_at(bodies.shape[a], bodies.position_mm[a], bodies.heading_rad[a]);
-        for (std::uint32_t k = 0; k < hull.count && !world.periodic; ++k) {
-            Vec2 const corner = hull.corner_mm[k];
-            deepest_mm =
-                std::max({deepest_mm, hull.radius_mm + box.min.x - corner.x, hull.radius_mm + box.min.y - corner.y,
-                          hull.radius_mm + corner.x - box.max.x, hull.radius_mm + corner.y - box.max.y});
+        for (Hull const& hull : hulls_at(bodies.shape[a], bodies.position_mm[a], bodies.heading_rad[a])) {
+            for (std::uint32_t k = 0; k < hull.count && !world.periodic; ++k) {
+                Vec2 const corner = hull.corner_mm[k];
+                deepest_mm =
+                    std::max({deepest_mm, hull.radius_mm + box.min.x - corner.x, hull.radius_mm + box.min.y - corner.y,
+                              hull.radius_mm + corner.x - box.max.x, hull.radius_mm + corner.y - box.max.y});
+            }
         }
     }
     return deepest_mm;
@@ -59,11 +72,7 @@ inline float deepest_overlap_mm(World const& world) {
 inline double energy(World const& world) {
     double sum = 0.0;
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-        Shape const& shape = world.bodies.shape[i];
-        double const r = world.bodies.radius_mm[i];
-        HullMass const of = shape.kind == ShapeKind::disk ? HullMass{static_cast<float>(std::numbers::pi * r * r),
-                                                                     static_cast<float>(0.5 * r * r)}
-                                                          : mass_of(hull_of(outline(shape)));
+        ShapeMass const of = mass_of(world.bodies.shape[i]);
         double const w = world.bodies.angular_velocity_rad_s[i];
         sum += of.area_mm2 * (squared_length(world.bodies.velocity_mm_s[i]) + of.gyration_mm2 * w * w);
     }

@@ -19,7 +19,7 @@ from matplotlib.transforms import IdentityTransform, TransformedPath
 from PIL import Image, ImageChops, ImageDraw
 from scipy.ndimage import distance_transform_edt
 
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 PARTS = 8  # of a pixel, along either side: places of stamps
 MAX_STAMP_BYTES = 64_000_000

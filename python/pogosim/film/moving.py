@@ -21,7 +21,8 @@ from pogosim.picture.layers import GLOWS, HINGE_PT, LINK_EDGE_PT, LINK_PT, PIN_P
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
 from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER, tension_colours
 from pogosim.picture.swarm import OBJECT, RGB, Recording
-from pogosim.scene import MEMBRANES, TALKERS, Category, Floats
+from pogosim.scene import MEMBRANES, TALKERS, Category
+from pogosim.shapes import Floats
 
 Numbers = npt.NDArray[np.int64]
 
@@ -274,4 +275,4 @@ class Moving:
 
 def is_disk(own: Category) -> bool:
     """Tell whether the objects of a category are round."""
-    return own.shape.kind not in ("rectangle", "triangle")
+    return own.shape.is_round

@@ -17,7 +17,7 @@ import pandas as pd
 
 from pogosim.errors import PictureError
 from pogosim.picture.colouring import SHADES, Scale, holds_numbers, label_of, numbers_of, scale_of, swatches_of
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 MISSING = 65535  # the code of no value
 LEVELS = 65534  # the highest of quantised numbers

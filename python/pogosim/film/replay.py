@@ -28,7 +28,8 @@ from pogosim.picture.links import box_of
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import OBJECT, RGB, Recording, coloured
-from pogosim.scene import MEMBRANES, TALKERS, Category, Shape
+from pogosim.scene import MEMBRANES, TALKERS, Category
+from pogosim.shapes import Shape
 
 FOLDER = Path(__file__).parent
 OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, "led_rgb", *RGB}
@@ -182,7 +183,7 @@ def category_data(name: str, category: Category) -> dict[str, Any]:
 
 def outline_of(shape: Shape) -> list[list[float]] | None:
     """Corners of a shape; None of a disk."""
-    return np.round(shape.outline(), 3).tolist() if shape.kind in ("rectangle", "triangle") else None
+    return None if shape.is_round else np.round(shape.outline(), 3).tolist()
 
 
 def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:

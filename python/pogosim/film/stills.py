@@ -21,7 +21,8 @@ from pogosim.picture import layers
 from pogosim.picture.figure import draw_key, draw_notes, draw_scale_bar, notes, title, width_of_key
 from pogosim.picture.palette import INK, PAPER
 from pogosim.picture.swarm import OBJECT, Recording, Swarm
-from pogosim.scene import Floats, bounds
+from pogosim.scene import bounds
+from pogosim.shapes import Floats
 
 DPI = 100.0
 ABOVE, BELOW = 0.36, 0.42  # inches: heading and clock, scale bar

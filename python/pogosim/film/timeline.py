@@ -13,7 +13,8 @@ import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.periodic import minimum_image
 from pogosim.picture.swarm import Recording
-from pogosim.scene import Floats, bounds
+from pogosim.scene import bounds
+from pogosim.shapes import Floats
 from pogosim.times import slack_s
 
 MAX_CELLS = 200_000_000  # objects times times

@@ -13,7 +13,7 @@ import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 from pogosim.times import slack_s
 
 Indices = npt.NDArray[np.int64]

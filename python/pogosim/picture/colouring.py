@@ -18,7 +18,7 @@ from pogosim.errors import PictureError
 from pogosim.nearest_name import nearest_name
 from pogosim.picture.palette import NO_LED
 from pogosim.picture.speed import SPEED
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 MAX_LABELS = 20  # in a legend
 ANGLES = ("angle",)

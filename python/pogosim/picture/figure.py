@@ -18,7 +18,8 @@ from pogosim.picture import layers
 from pogosim.picture.colouring import MAX_LABELS, Colouring, Legend, Scale
 from pogosim.picture.palette import EDGE, INK, PAPER
 from pogosim.picture.swarm import OBJECT, Swarm
-from pogosim.scene import Floats, bounds
+from pogosim.scene import bounds
+from pogosim.shapes import Floats
 
 MAX_COLUMNS = 4  # of panels
 PANEL = 4.0  # inches, its longer side

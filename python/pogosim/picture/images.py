@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.periodic import minimum_image
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 Box: TypeAlias = tuple[Floats, Floats]  # least and greatest corner of a periodic arena
 Indices = npt.NDArray[np.int64]

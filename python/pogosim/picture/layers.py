@@ -27,7 +27,8 @@ from pogosim.picture.palette import (
     tension_colours,
 )
 from pogosim.picture.swarm import OBJECT, RGB, Swarm
-from pogosim.scene import MEMBRANES, Category, Floats, Shape, bounds, floor_outline, light_levels
+from pogosim.scene import MEMBRANES, Category, bounds, floor_outline, light_levels
+from pogosim.shapes import Floats, Shape
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
 MAX_SNAPSHOTS = 1500

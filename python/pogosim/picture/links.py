@@ -14,7 +14,8 @@ from scipy.spatial import KDTree
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box, lines_between
 from pogosim.picture.swarm import OBJECT, Swarm
-from pogosim.scene import TALKERS, Floats, bounds
+from pogosim.scene import TALKERS, bounds
+from pogosim.shapes import Floats
 
 Pairs = npt.NDArray[np.int64]
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import to_rgb
 
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 PALETTE: dict[str, Any] = json.loads((Path(__file__).parents[1] / "palette.json").read_text(encoding="utf-8"))
 PAPER: str = PALETTE["paper"]

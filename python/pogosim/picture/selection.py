@@ -10,7 +10,7 @@ import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.picture.colouring import is_internal
 from pogosim.run_columns import RUN, is_one_run, tells_runs_apart
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 # Columns of the file that pictures use, by what they hold.
 NUMBERS = ("time", "x", "y", "angle")

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.periodic import steps_of
-from pogosim.scene import Floats
+from pogosim.shapes import Floats
 
 SPEED = "speed"  # mm/s
 OBJECT = "\0object"  # tells objects apart, see swarm.py

@@ -21,19 +21,9 @@ from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, numbers_runs, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
-from pogosim.scene import (
-    Category,
-    Floats,
-    Lamp,
-    Shape,
-    bounds,
-    ray_names,
-    read_categories,
-    read_lamps,
-    read_periodic,
-    read_top_speed,
-)
+from pogosim.scene import Category, Lamp, bounds, ray_names, read_categories, read_lamps, read_periodic, read_top_speed
 from pogosim.several_files import configuration_of
+from pogosim.shapes import Floats, Shape
 from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
 

@@ -1,0 +1,119 @@
+// Shapes in a configuration: what they become, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "config_file.hpp"
+#include "geometry/shape.hpp"
+
+using namespace pogosim;
+using namespace pogosim::config_file;
+
+namespace {
+
+std::string object(std::string const& keys) {
+    return "objects:\n  o: {type: passive_object, x: 500, y: 500, " + keys + "}\n";
+}
+
+Shape shape_of(std::string const& keys) {
+    return load(object(keys)).objects[0].spec.shape;
+}
+
+TEST(ShapeKeys, CapsuleIsAsLargeAsItsRectangle) {
+    Shape const shape = shape_of("geometry: capsule, body_width: 60, body_height: 20");
+    EXPECT_EQ(shape.kind, ShapeKind::capsule);
+    EXPECT_FLOAT_EQ(bounding_radius(shape), 30.0F);
+    EXPECT_FLOAT_EQ(inner_radius(shape), 10.0F);
+}
+
+TEST(ShapeKeys, PolygonHasItsCentreOfMassAtItsPosition) {
+    for (char const* const corners : {"[[100, 100], [160, 100], [160, 140], [100, 140]]",
+                                      "[[100, 140], [160, 140], [160, 100], [100, 100]]"}) {  // either way round
+        Shape const shape = shape_of(std::string("geometry: polygon, corners: ") + corners);
+        Box const box = bounding_box(shape);
+        EXPECT_NEAR(box.min.x, -30.0F, 1e-4F);
+        EXPECT_NEAR(box.max.y, 20.0F, 1e-4F);
+        EXPECT_NEAR(moments_of(shape).area_mm2, 2400.0, 1e-2);
+    }
+}
+
+TEST(ShapeKeys, CornerRadiusRoundsWithinTheSharpCorners) {
+    double const cut_off = (4.0 - std::numbers::pi) * 25.0;
+    Shape const box = shape_of("geometry: rectangle, body_width: 60, body_height: 40, corner_radius: 5");
+    EXPECT_NEAR(moments_of(box).area_mm2, 2400.0 - cut_off, 0.1);
+    EXPECT_NEAR(bounding_box(box).max.x, 30.0F, 1e-4F);
+    EXPECT_FLOAT_EQ(bounding_radius(shape_of("geometry: disk, radius: 20, corner_radius: 500")), 20.0F);
+}
+
+TEST(ShapeKeys, CompoundHasItsPartsWhereTheyAreSaidToBe) {
+    Shape const shape = shape_of(
+        "geometry: compound, parts: [{geometry: rectangle, body_width: 100, body_height: 10}, "
+        "{geometry: capsule, body_width: 60, body_height: 20, x: 50, y: 30, angle_deg: 90}]");
+    ASSERT_EQ(shape.parts.size(), 2U);
+    AreaMoments const all = moments_of(shape);
+    EXPECT_NEAR(all.centre_mm().x, 0.0F, 1e-3F);
+    EXPECT_NEAR(all.centre_mm().y, 0.0F, 1e-3F);
+    Vec2 const apart = moments_of(shape.parts[1]).centre_mm() - moments_of(shape.parts[0]).centre_mm();
+    EXPECT_NEAR(apart.x, 50.0F, 1e-3F);
+    EXPECT_NEAR(apart.y, 30.0F, 1e-3F);
+    Box const box = bounding_box(shape);
+    EXPECT_NEAR(box.max.y - box.min.y, 5.0F + 60.0F, 1e-2F);  // upright: from -5 to 60
+}
+
+TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
+    auto const error = [](std::string const& keys) { return load_error(object(keys)); };
+    std::string const at = "x.yaml:2: objects.o";
+    std::string const corners = at + ".corners: ";
+    EXPECT_EQ(error("geometry: polygon"),
+              at + ": needs corners: a list of 3 to 8 corners, such as [[0, 0], [40, 0], [20, 30]] (mm)");
+    EXPECT_EQ(
+        error("geometry: polygon, corners: [[0, 0], [1, 1]]"),
+        corners + "expected a list of 3 to 8 corners, such as [[0, 0], [40, 0], [20, 30]] (mm), found a list of 2");
+    EXPECT_NE(error("geometry: polygon, corners: 3").find("expected a list of 3 to 8 corners"), std::string::npos);
+    EXPECT_EQ(error("geometry: polygon, corners: [[0, 0], [40, 0], [10, 10], [0, 40]]"),
+              corners +
+                  "the polygon is not convex at (10, 10); put such a body together of convex parts, with "
+                  "geometry: compound");
+    EXPECT_EQ(error("geometry: polygon, corners: [[0, 0], [40, 0], [40, 0], [0, 40]]"),
+              corners + "corners 1 and 2 are the same");
+    EXPECT_EQ(error("geometry: polygon, corners: [[0, 0], [40, 0], [80, 0]]"),
+              corners + "these corners enclose no area");
+    EXPECT_NE(error("geometry: polygon, corners: [[0, 0], [40, 40], [40, 0], [0, 39]]").find("cross or touch"),
+              std::string::npos);
+    EXPECT_NE(error("geometry: polygon, corners: [[0, 0], [40, x], [20, 30]]").find("objects.o.corners.1"),
+              std::string::npos);
+    // A pentagram turns to one side at each corner, too.
+    EXPECT_NE(error("geometry: polygon, corners: [[0, -50], [29, 40], [-47, -15], [47, -15], [-29, 40]]")
+                  .find("cross or touch"),
+              std::string::npos);
+    EXPECT_EQ(error("geometry: rectangle, body_width: 60, body_height: 30, corner_radius: 15"),
+              at + ".corner_radius: expected at most 14.85 (mm), which leaves some of every side, found 15");
+    EXPECT_EQ(error("geometry: rectangle, corner_radius: -1").substr(0, at.size() + 25),
+              at + ".corner_radius: expected ");
+    std::string const parts = at + ".parts";
+    EXPECT_EQ(error("geometry: compound").substr(0, at.size() + 34), at + ": needs parts: a list of maps, suc");
+    EXPECT_NE(error("geometry: compound, parts: []").find(parts + ": expected 1 to 16 entries, found 0"),
+              std::string::npos);
+    EXPECT_EQ(error("geometry: compound, parts: [{geometry: disk, radius: 20}, {geometry: disk, radius: 20, x: 30}, "
+                    "{geometry: disk, radius: 20, x: 80.2}]"),
+              parts + ".2: hangs together with no part before it; parts have to overlap or touch");
+    EXPECT_EQ(error("geometry: compound, parts: [{geometry: compound}]"),
+              parts + ".0.geometry: expected one of disk, rectangle, capsule, triangle, polygon, found 'compound'");
+    EXPECT_EQ(error("geometry: compound, parts: [{radius: 20}]"),
+              parts + ".0: the key 'geometry' is missing; expected one of disk, rectangle, capsule, triangle, polygon");
+    EXPECT_NE(error("geometry: compound, parts: [{geometry: polygon, corners: [[0, 0]]}]").find(parts + ".0.corners"),
+              std::string::npos);
+    EXPECT_EQ(load_error("objects:\n  m: {type: membrane, geometry: compound}\n"),
+              "x.yaml:2: objects.m.geometry: expected one of disk, rectangle, capsule, triangle, polygon, found "
+              "'compound'");
+}
+
+TEST(ShapeKeys, PartsMayTouchInAnyOrder) {
+    EXPECT_EQ(load_error(object("geometry: compound, parts: [{geometry: disk, radius: 20}, "
+                                "{geometry: disk, radius: 20, x: 80}, {geometry: disk, radius: 20, x: 40}]")),
+              "no error");
+}
+
+}  // namespace
