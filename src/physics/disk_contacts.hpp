@@ -141,7 +141,8 @@ private:
     std::vector<float> driven_impulse_;
     std::vector<HullImpulse> hull_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
-    std::vector<Pushing> pushing_;  // scratch, while near_ is rebuilt
+    std::vector<Pushing> pushing_;      // scratch, while near_ is rebuilt
+    std::vector<std::uint8_t> pushes_;  // of each body: it has a contact in pushing_
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
     std::uint32_t first_hull_ = 0;

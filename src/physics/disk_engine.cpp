@@ -108,7 +108,7 @@ public:
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
         if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
             neighbour_list_.build(world, reach_mm, workers_);
-            wall_neighbour_list_.build(world, position_correction_.walls(), neighbour_list_.skin_mm());
+            wall_neighbour_list_.build(world, position_correction_, neighbour_list_.skin_mm());
             contacts_.build(world, assemblies_, neighbour_list_, wall_neighbour_list_);
         }
         some_are_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
