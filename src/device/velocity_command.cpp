@@ -1,5 +1,6 @@
 #include "device/velocity_command.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,11 +13,13 @@ namespace {
 
 constexpr auto kFullPower = static_cast<float>(kFullMotorPower);
 constexpr float kLinearNoiseUnit = 100.0F;  // mm/s per unit of linear_noise_stddev
+constexpr std::array kSign{-1.0F, 1.0F};    // of a power, backwards and forwards
 
 /// Power with which a motor turns forwards. The bias drives the left motor forwards and the right one backwards.
+/// The direction is not a branch: which way a robot turns cannot be predicted.
 float signed_power(Motors const& motors, Drive const& drive) {
     float const power = motors.power[drive.motor];
-    float const forwards = motors.direction[drive.motor] == drive.forward ? power : -power;
+    float const forwards = kSign[motors.direction[drive.motor] == drive.forward ? 1 : 0] * power;
     switch (drive.motor) {
         case motorL:
             return forwards + motors.bias;

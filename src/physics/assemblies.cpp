@@ -80,8 +80,8 @@ void Assemblies::find(World const& world) {
 
     assemblies_.clear();
     place_.assign(count, kNone);
+    flatten(first_body_);
     for (std::uint32_t i = 0; i < count; ++i) {
-        first_body_[i] = root_of(first_body_, i);
         if (is_held[i] != 0) {
             of(i).bodies.push_back(i);
         }

@@ -162,17 +162,25 @@ DiskContacts::Pushing DiskContacts::named(std::uint32_t contact) const {
 
 void DiskContacts::keep_impulses() {
     pushing_.clear();
+    pushes_.assign(disks_.size(), 0);
+    auto const keep = [this](std::uint32_t contact, float impulse, HullImpulse const& of_hull) {
+        pushing_.push_back(named(contact));
+        pushing_.back().impulse = impulse;
+        pushing_.back().of_hull = of_hull;
+        pushes_[near_[contact].a] = 1;
+        if (!is_wall(contact)) {
+            pushes_[near_[contact].b] = 1;
+        }
+    };
     for (std::uint32_t i = 0; i < first_hull_; ++i) {
         if (driven_impulse_[i] > 0.0F) {
-            pushing_.push_back(named(i));
-            pushing_.back().impulse = driven_impulse_[i];
+            keep(i, driven_impulse_[i], {});
         }
     }
     for (std::uint32_t i = first_hull_; i < near_.size(); ++i) {
         HullImpulse const& impulse = hull_impulse_[i - first_hull_];
         if (impulse.parts[0].normal > 0.0F || impulse.parts[1].normal > 0.0F) {
-            pushing_.push_back(named(i));
-            pushing_.back().of_hull = impulse;
+            keep(i, 0.0F, impulse);
         }
     }
     std::ranges::sort(pushing_, std::less{}, &Pushing::name);
@@ -181,7 +189,10 @@ void DiskContacts::keep_impulses() {
 void DiskContacts::give_impulses() {
     driven_impulse_.assign(first_hull_, 0.0F);
     hull_impulse_.assign(near_.size() - first_hull_, {});
-    for (std::uint32_t i = 0; i < near_.size() && !pushing_.empty(); ++i) {
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+        if (pushes_[near_[i].a] == 0) {
+            continue;
+        }
         auto const name = named(i).name();
         auto const known = std::ranges::lower_bound(pushing_, name, std::less{}, &Pushing::name);
         if (known != pushing_.end() && known->name() == name) {

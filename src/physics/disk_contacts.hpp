@@ -156,6 +156,7 @@ private:
     std::vector<SpringImpulse> spring_impulse_;
     std::vector<TouchingParts> parts_with_fixed_;  // the same
     std::vector<Pushing> pushing_;                 // the same
+    std::vector<std::uint8_t> pushes_;             // of each body: it has a contact in pushing_
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_
     std::uint32_t first_hull_ = 0;

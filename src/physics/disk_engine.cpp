@@ -3,6 +3,7 @@
 // straight line, at the cost of reading and writing them. Soft membranes are disks joined by springs, or rectangles
 // joined by hinges.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -107,7 +108,7 @@ public:
         float const reach_mm = 2.0F * std::min(std::max(kReserve * fastest_mm_s * dt_s, kLeastReachMm), ordinary_mm_);
         if (moved_ || !neighbour_list_.covers(world, reach_mm, workers_)) {
             neighbour_list_.build(world, reach_mm, workers_);
-            wall_neighbour_list_.build(world, position_correction_.walls(), neighbour_list_.skin_mm());
+            wall_neighbour_list_.build(world, position_correction_, neighbour_list_.skin_mm());
             contacts_.build(world, assemblies_, neighbour_list_, wall_neighbour_list_);
         }
         some_are_fast_ = fastest_mm_s * dt_s > ordinary_mm_;
@@ -163,38 +164,40 @@ private:
 
     void move_others(World& world, float dt_s) {
         auto const count = static_cast<std::uint32_t>(movable_.size());
-        fast_in_range_.resize(workers_.range_count(count, kLeastBodies));
+        moved_in_range_.resize(workers_.range_count(count, kLeastBodies));
         workers_.run_ranges(count, kLeastBodies, [&](WorkRange range) {
-            std::vector<std::uint32_t>& fast = fast_in_range_[range.part];
-            fast.clear();
+            Moved& moved = moved_in_range_[range.part];
+            moved.fast.clear();
+            moved.turned.resize(range.last - range.first);
+            std::size_t turned_count = 0;
             for (std::uint32_t const i : std::span(movable_).subspan(range.first, range.last - range.first)) {
-                move_other(world, i, dt_s, fast);
+                move_other(world, i, dt_s, moved.fast);
+                moved.turned[turned_count] = i;
+                turned_count += world.bodies.heading_rad[i] != world.bodies.start_rad[i] ? 1 : 0;
+            }
+            for (std::uint32_t const i : std::span(moved.turned).first(turned_count)) {
+                world.bodies.heading_dir[i] = direction(world.bodies.heading_rad[i]);
             }
         });
         fast_.clear();
-        for (std::vector<std::uint32_t> const& fast : fast_in_range_) {
-            fast_.insert(fast_.end(), fast.begin(), fast.end());
+        for (Moved const& moved : moved_in_range_) {
+            fast_.insert(fast_.end(), moved.fast.begin(), moved.fast.end());
         }
     }
 
     /// Moves a body without contacts on a straight line, and keeps any body inside the arena; in a periodic arena, fast
-    /// bodies are wrapped later. Appends to `fast` the fast bodies and those that may have met one.
+    /// bodies are wrapped later. Appends to `fast` the fast bodies and those that may have met one. Whether a body has
+    /// contacts, and whether it turns, is hard to predict: neither is a branch.
     void move_other(World& world, std::uint32_t i, float dt_s, std::vector<std::uint32_t>& fast) {
         Bodies& bodies = world.bodies;
-        Vec2 const velocity_mm_s = bodies.velocity_mm_s[i];
-        float const spin_rad_s = bodies.angular_velocity_rad_s[i];
-        Vec2 place_mm = bodies.position_mm[i];
         bool const has_contact = islands_.has_contact(i);
-        if (!has_contact) {
-            place_mm = place_mm + dt_s * velocity_mm_s;
-            bodies.heading_rad[i] += dt_s * spin_rad_s;
-        }
-        bodies.heading_rad[i] = wrap_angle(bodies.heading_rad[i]);
-        if (bodies.heading_rad[i] != bodies.start_rad[i]) {
-            bodies.heading_dir[i] = direction(bodies.heading_rad[i]);
-        }
+        std::array const places_mm{bodies.position_mm[i] + dt_s * bodies.velocity_mm_s[i], bodies.position_mm[i]};
+        std::array const headings_rad{bodies.heading_rad[i] + dt_s * bodies.angular_velocity_rad_s[i],
+                                      bodies.heading_rad[i]};
+        Vec2 place_mm = places_mm[has_contact ? 1 : 0];
+        bodies.heading_rad[i] = wrap_angle(headings_rad[has_contact ? 1 : 0]);
         float const moved2 = squared_length(place_mm - bodies.start_mm[i]);
-        bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (has_contact && some_are_fast_);
+        bool const is_fast = moved2 > ordinary_mm_ * ordinary_mm_ || (some_are_fast_ && has_contact);
         if (is_fast) {
             fast.push_back(i);
         }
@@ -314,7 +317,12 @@ private:
     std::vector<std::uint32_t> movable_;  // bodies that are not fixed
     std::vector<std::uint32_t> movable_hulls_;
     std::vector<std::uint32_t> fast_;  // bodies in this step
-    std::vector<std::vector<std::uint32_t>> fast_in_range_;
+    /// Bodies of one range of movable_ in this step.
+    struct Moved {
+        std::vector<std::uint32_t> fast;
+        std::vector<std::uint32_t> turned;  // and room for all
+    };
+    std::vector<Moved> moved_in_range_;
     float most_motion_mm_ = std::numeric_limits<float>::max();  // in a step
     float ordinary_mm_ = 1.0F;                                  // a body that moves further in a step is fast
     bool some_are_fast_ = false;                                // before contacts slow them down

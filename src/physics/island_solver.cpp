@@ -54,7 +54,7 @@ IslandSolver::IslandSolver(World const& world)
       most_motion_mm_(most_motion_mm(world, std::numeric_limits<float>::max())),
       mover_(world.bodies.size()) {}
 
-std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body) {
+inline std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body) {
     std::uint32_t const known = mover_[body];
     if (known < movers_.size() && movers_[known].body == body) {
         return known;
@@ -203,8 +203,8 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
 }
 
 /// Places of up to four contacts, the first of which has the index `first`. Unused lanes have a large gap.
-IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts const& contacts,
-                                               std::span<Contact const> four, std::uint32_t first) const {
+inline IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts const& contacts,
+                                                      std::span<Contact const> four, std::uint32_t first) const {
     std::array<Four, kLanes> motion;
     Places places = {};
     Four radius_mm = {};
@@ -296,35 +296,26 @@ void IslandSolver::solve_if_changed(Contact& contact, std::uint64_t clean_block,
 /// the whole crowd in front of it.
 void IslandSolver::solve_velocities(float h_s, bool pushes) {
     for (int pass = 0; pass < kMostPasses && dirty_ != 0; ++pass) {
-        if (pass % 2 == 0) {
-            for (std::uint64_t due = dirty_; due != 0;) {
-                auto const block = static_cast<std::uint32_t>(std::bit_width(due)) - 1;
-                solve_block(block, /*backwards=*/true, h_s, pushes);
-                due = dirty_ & ((std::uint64_t{1} << block) - 1);
-            }
-        } else {
-            for (std::uint64_t due = dirty_; due != 0;) {
-                auto const block = static_cast<std::uint32_t>(std::countr_zero(due));
-                solve_block(block, /*backwards=*/false, h_s, pushes);
-                due = dirty_ & (~std::uint64_t{1} << block);
-            }
+        bool const backwards = pass % 2 == 0;
+        for (std::uint64_t due = dirty_; due != 0;) {
+            auto const block = static_cast<std::uint32_t>(backwards ? std::bit_width(due) - 1 : std::countr_zero(due));
+            solve_block(block, backwards, h_s, pushes);
+            std::uint64_t const bit = std::uint64_t{1} << block;
+            due = dirty_ & (backwards ? bit - 1 : -bit << 1U);
         }
     }
 }
 
+/// A block of several contacts stays dirty if others in it are.
 void IslandSolver::solve_block(std::uint32_t block, bool backwards, float h_s, bool pushes) {
     std::uint64_t const bit = std::uint64_t{1} << block;
-    dirty_ &= ~bit;
-    if (block_shift_ == 0) {
-        solve_if_changed(contacts_[block], bit, h_s, pushes);
-        return;
-    }
-    // The block stays dirty if other contacts in it are.
+    std::uint64_t const clean = block_shift_ == 0 ? bit : 0;
     auto const count = static_cast<std::uint32_t>(contacts_.size());
     std::uint32_t const first = block << block_shift_;
     std::uint32_t const last = std::min(first + (1U << block_shift_), count);
+    dirty_ &= ~bit;
     for (std::uint32_t i = 0; i < last - first; ++i) {
-        solve_if_changed(contacts_[backwards ? last - 1 - i : first + i], 0, h_s, pushes);
+        solve_if_changed(contacts_[backwards ? last - 1 - i : first + i], clean, h_s, pushes);
     }
 }
 

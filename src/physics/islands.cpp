@@ -109,24 +109,26 @@ void Islands::unite(DiskContacts const& contacts) {
     }
 }
 
-/// Appends each contact to the list of its island.
+/// Appends each contact to the list of its island. Branch-free, since which contact begins a new island is hard to
+/// predict.
 void Islands::link(DiskContacts const& contacts) {
-    islands_.clear();
+    islands_.reserve(contacts_.capacity() + 1);  // so that it grows as rarely
+    islands_.assign(contacts_.size() + 1, {});
+    std::uint32_t count = 1;
     for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
-        std::uint32_t const body = contacts.near()[contacts_[i].contact].a;
-        std::uint32_t const root = root_of(parent_, body);
-        parent_[body] = root;
-        if (island_[root] == kNone) {
-            island_[root] = static_cast<std::uint32_t>(islands_.size());
-            islands_.push_back({.first = i});
-        } else {
-            contacts_[islands_[island_[root]].last].next = i;
-        }
-        Island& island = islands_[island_[root]];
+        std::uint32_t& number = island_[parent_[contacts.near()[contacts_[i].contact].a]];
+        bool const is_new = number == kNoIsland;
+        number = is_new ? count : number;
+        count += is_new ? 1 : 0;
+        Island& island = islands_[number];
+        island.first = std::min(island.first, i);
+        contacts_[is_new ? i : island.last].next = i;
+        contacts_[i].next = kNone;
         island.last = i;
         ++island.contact_count;
-        island.is_active = island.is_active || meets_[i] != 0;
+        island.is_active |= meets_[i] != 0;
     }
+    islands_.resize(count);
 }
 
 /// Appends each assembly to the list of its island. A moving assembly keeps its island active; without contacts, it is
@@ -136,12 +138,12 @@ void Islands::link_assemblies(World const& world, Assemblies const& assemblies, 
     for (std::uint32_t i = 0; i < next_assembly_.size(); ++i) {
         Assembly const& assembly = assemblies.all()[i];
         bool const moves = reach.wakes_assemblies || is_moving(world, assembly);
-        std::uint32_t& island = island_[root_of(parent_, assembly.bodies.front())];
-        if (island == kNone && moves) {
+        std::uint32_t& island = island_[parent_[assembly.bodies.front()]];
+        if (island == kNoIsland && moves) {
             island = static_cast<std::uint32_t>(islands_.size());
             islands_.emplace_back();
         }
-        if (island != kNone) {
+        if (island != kNoIsland) {
             next_assembly_[i] = islands_[island].first_assembly;
             islands_[island].first_assembly = i;
             islands_[island].is_active = islands_[island].is_active || moves;
@@ -149,33 +151,10 @@ void Islands::link_assemblies(World const& world, Assemblies const& assemblies, 
     }
 }
 
-void Islands::mark_bodies(DiskContacts const& contacts) {
-    for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
-        NearContact const& near = contacts.near()[contacts_[i].contact];
-        if (islands_[island_[parent_[near.a]]].is_active) {
-            has_contact_[near.a] = 1;
-            if (contacts.is_pair(contacts_[i].contact)) {
-                has_contact_[near.b] = 1;
-            }
-        }
-    }
-}
-
-void Islands::mark_assemblies(Assemblies const& assemblies) {
-    for (Island const& island : islands_) {
-        for (std::uint32_t i = island.first_assembly; island.is_active && i != kNone; i = next_assembly_[i]) {
-            for (std::uint32_t const body : assemblies.all()[i].bodies) {
-                has_contact_[body] = 1;
-            }
-        }
-    }
-}
-
 void Islands::find(World const& world, Assemblies const& assemblies, DiskContacts const& contacts, Reach const& reach,
                    WorkerPool& workers) {
     parent_ = assemblies.first_bodies();
-    island_.assign(parent_.size(), kNone);
-    has_contact_.assign(parent_.size(), 0);
+    island_.assign(parent_.size(), kNoIsland);
     contacts_.clear();
     meets_.clear();
     auto const count = static_cast<std::uint32_t>(contacts.near().size());
@@ -193,10 +172,9 @@ void Islands::find(World const& world, Assemblies const& assemblies, DiskContact
         find_hulls(world, contacts, reach, hulls, found);
     });
     unite(contacts);
+    flatten(parent_);
     link(contacts);
     link_assemblies(world, assemblies, reach);
-    mark_bodies(contacts);
-    mark_assemblies(assemblies);
 }
 
 }  // namespace pogosim

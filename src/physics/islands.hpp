@@ -41,16 +41,18 @@ public:
 
     /// Sorted by their first contacts; islands that are a single assembly come last. The contacts of each are in the
     /// order of DiskContacts::near().
-    std::span<Island const> islands() const { return islands_; }
+    std::span<Island const> islands() const { return std::span(islands_).subspan(1); }
     std::span<IslandContact const> contacts() const { return contacts_; }
 
     /// For each assembly, the next one in the same island; kNone: it is the last one.
     std::span<std::uint32_t const> next_assemblies() const { return next_assembly_; }
 
     /// Whether the body is in an active island.
-    bool has_contact(std::uint32_t body) const { return has_contact_[body] != 0; }
+    bool has_contact(std::uint32_t body) const { return islands_[island_[parent_[body]]].is_active; }
 
 private:
+    static constexpr std::uint32_t kNoIsland = 0;
+
     /// A contact whose gap is less than the reach.
     struct Close {
         std::uint32_t contact;  // into DiskContacts::near()
@@ -66,17 +68,14 @@ private:
     void unite(DiskContacts const& contacts);
     void link(DiskContacts const& contacts);
     void link_assemblies(World const& world, Assemblies const& assemblies, Reach const& reach);
-    void mark_bodies(DiskContacts const& contacts);
-    void mark_assemblies(Assemblies const& assemblies);
 
-    std::vector<std::uint32_t> parent_;  // for each body, in the disjoint-set forest
-    std::vector<std::uint32_t> island_;  // for each root; kNone: none
-    std::vector<std::uint8_t> has_contact_;
+    std::vector<std::uint32_t> parent_;      // for each body, in the disjoint-set forest; after the search, its root
+    std::vector<std::uint32_t> island_;      // for each root, into islands_; kNoIsland: none
     std::vector<std::vector<Close>> close_;  // for each range of contacts, during the search
     std::vector<IslandContact> contacts_;    // in the order of DiskContacts::near()
     std::vector<std::uint8_t> meets_;        // for each link: its bodies touch within this step
     std::vector<std::uint32_t> next_assembly_;
-    std::vector<Island> islands_;
+    std::vector<Island> islands_{{}};  // behind kNoIsland, which is empty and never active
 };
 
 }  // namespace pogosim

@@ -110,15 +110,20 @@ void NeighbourList::sort_into_cells(World const& world) {
     start_.back() = static_cast<std::uint32_t>(items_.size());
 }
 
-void NeighbourList::add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NeighbourPair>& pairs) const {
+bool NeighbourList::are_near(Item const& a, Item const& b, Vec2 shift_mm) const {
     float const reach_mm = a.radius_mm + b.radius_mm + skin_mm_;
-    if (squared_length(b.position_mm + shift_mm - a.position_mm) < reach_mm * reach_mm &&
-        (is_fixed_[a.body] & is_fixed_[b.body]) == 0) {
-        pairs.push_back({a.body, b.body});
+    bool const is_within = squared_length(b.position_mm + shift_mm - a.position_mm) < reach_mm * reach_mm;
+    return is_within & ((is_fixed_[a.body] & is_fixed_[b.body]) == 0);
+}
+
+void NeighbourList::add_if_near(Item const& a, Item const& b, Vec2 shift_mm) {
+    if (are_near(a, b, shift_mm)) {
+        pairs_.push_back({a.body, b.body});
     }
 }
 
 /// Finds the pairs of a cell with itself, its right neighbour and the three below, which lie in two contiguous rows.
+/// Branch-free, since which disks are near is hard to predict.
 void NeighbourList::find_around(std::uint32_t cell, std::vector<NeighbourPair>& pairs) const {
     auto const columns = static_cast<std::uint32_t>(columns_);
     std::uint32_t const column = cell % columns;
@@ -132,19 +137,26 @@ void NeighbourList::find_around(std::uint32_t cell, std::vector<NeighbourPair>& 
     }
     for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
         Item const& item = items_[i];
+        std::size_t count = pairs.size();
+        pairs.resize(count + (end - i - 1) + (below_end - below));
+        auto const look_at = [&](Item const& other) {
+            pairs[count] = {item.body, other.body};
+            count += are_near(item, other, {}) ? 1 : 0;
+        };
         for (std::uint32_t k = i + 1; k < end; ++k) {
-            add_if_near(item, items_[k], {}, pairs);
+            look_at(items_[k]);
         }
         for (std::uint32_t k = below; k < below_end; ++k) {
-            add_if_near(item, items_[k], {}, pairs);
+            look_at(items_[k]);
         }
+        pairs.resize(count);
     }
 }
 
 void NeighbourList::find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm) {
     for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
         for (std::uint32_t k = start_[other]; k < start_[other + 1]; ++k) {
-            add_if_near(items_[i], items_[k], shift_mm, pairs_);
+            add_if_near(items_[i], items_[k], shift_mm);
         }
     }
 }
@@ -188,7 +200,7 @@ void NeighbourList::find_of_large(World const& world) {
     };
     auto const add = [&](Item const& a, Item const& b) {
         Vec2 const way = b.position_mm - a.position_mm;
-        add_if_near(a, b, minimum_image(world, a.position_mm, b.position_mm) - way, pairs_);
+        add_if_near(a, b, minimum_image(world, a.position_mm, b.position_mm) - way);
     };
     for (std::size_t k = 0; k < large_.size(); ++k) {
         Item const disk = item_of(large_[k]);

@@ -52,7 +52,8 @@ private:
     void find_between(std::uint32_t cell, std::uint32_t other, Vec2 shift_mm);
     void find_across_seams(Vec2 size_mm);
     void find_of_large(World const& world);
-    void add_if_near(Item const& a, Item const& b, Vec2 shift_mm, std::vector<NeighbourPair>& pairs) const;
+    bool are_near(Item const& a, Item const& b, Vec2 shift_mm) const;
+    void add_if_near(Item const& a, Item const& b, Vec2 shift_mm);
 
     float skin_mm_ = 0.0F;
     float largest_mm_;                    // largest radius in the cells

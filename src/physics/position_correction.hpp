@@ -46,6 +46,9 @@ public:
     /// The same for a body that moves so far in a step that the engine has missed the wall: it may not sink in at all.
     Vec2 hold_fast(std::uint32_t body, Vec2 place_mm) { return look_at_walls(clearances_[body], place_mm, 1.0F); }
 
+    /// No wall is nearer to the last corrected place of a body.
+    float free_mm(std::uint32_t body) const { return clearances_[body].free_mm; }
+
     /// The last corrected place of a body.
     Vec2 last(std::uint32_t body) const { return clearances_[body].last_mm; }
 

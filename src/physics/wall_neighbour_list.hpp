@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/wall_index.hpp"
+#include "physics/position_correction.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -46,8 +47,8 @@ class WallNeighbourList {
 public:
     WallNeighbourList(World const& world, WallIndex const& walls);
 
-    /// Finds the edges that are less than `skin_mm` from movable disks.
-    void build(World const& world, WallIndex const& walls, float skin_mm);
+    /// Finds the edges that are less than `skin_mm` from movable disks. `places`: those of the bodies now.
+    void build(World const& world, PositionCorrection const& places, float skin_mm);
 
     std::span<NeighbourWall const> walls() const { return near_; }
     WallSide const& side(std::uint32_t edge) const { return (*sides_)[edge]; }

@@ -25,13 +25,17 @@ using Group = std::set<std::uint32_t>;
 /// All that is needed to find islands in a world.
 struct Finder {
     explicit Finder(World const& world)
-        : walls(world.arena), pairs(world), wall_neighbour_list(world, walls), contacts(world, {}), assemblies(world) {
+        : places(world),
+          pairs(world),
+          wall_neighbour_list(world, places.walls()),
+          contacts(world, {}),
+          assemblies(world) {
         build(world);
     }
 
     void build(World const& world) {
         pairs.build(world, kReachMm, workers);
-        wall_neighbour_list.build(world, walls, pairs.skin_mm());
+        wall_neighbour_list.build(world, places, pairs.skin_mm());
         contacts.build(world, assemblies, pairs, wall_neighbour_list);
     }
 
@@ -50,7 +54,7 @@ struct Finder {
     }
 
     WorkerPool workers;
-    WallIndex walls;
+    PositionCorrection places;
     NeighbourList pairs;
     WallNeighbourList wall_neighbour_list;
     DiskContacts contacts;
