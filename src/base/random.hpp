@@ -7,9 +7,13 @@
 // OOPSLA 2014. The distributions are ours because those of <random> differ between standard libraries.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 
 #include "base/exact_math.hpp"
 
@@ -37,14 +41,42 @@ public:
     /// 32 uniform bits.
     std::uint32_t bits() {
         std::uint64_t const old = state_;
-        state_ = old * 6364136223846793005ULL + increment_;
-        auto const shifted = static_cast<std::uint32_t>(((old >> 18U) ^ old) >> 27U);
-        auto const turn = static_cast<std::uint32_t>(old >> 59U);
-        return (shifted >> turn) | (shifted << ((32U - turn) & 31U));
+        state_ = old * kMultiplier + increment_;
+        return output(old);
     }
 
     /// Uniform in [0, 1), 24 bits.
     float uniform() { return static_cast<float>(bits() >> 8U) * 0x1p-24F; }
+
+    /// Makes `hits.size()` draws as uniform() does. Writes the numbers, from 0 on and in their order, of those below
+    /// `probability` to the front of `hits`, and returns how many there are.
+    std::size_t hits_of(float probability, std::span<std::uint32_t> hits) {
+        // Compares whole numbers, which decides as single precision does, since its products with powers of two are
+        // exact.
+        auto const limit = static_cast<std::uint64_t>(std::ceil(std::clamp(probability, 0.0F, 1.0F) * 0x1p24F)) << 8U;
+        // Four draws at a time: a draw has to wait for the fourth before it, not for the last one.
+        constexpr std::uint64_t multiplier2 = kMultiplier * kMultiplier;
+        std::uint64_t const increment4 = increment_ * (1U + kMultiplier) * (1U + multiplier2);
+        std::array<std::uint64_t, 4> states{state_};
+        for (std::size_t k = 1; k < states.size(); ++k) {
+            states[k] = states[k - 1] * kMultiplier + increment_;
+        }
+        std::uint32_t next = 0;
+        std::size_t count = 0;
+        for (; next + states.size() <= hits.size(); next += static_cast<std::uint32_t>(states.size())) {
+            for (std::uint32_t k = 0; k < states.size(); ++k) {
+                hits[count] = next + k;  // without a branch, which could not be predicted
+                count += output(states[k]) < limit ? 1U : 0U;
+                states[k] = states[k] * (multiplier2 * multiplier2) + increment4;
+            }
+        }
+        state_ = states[0];
+        for (; next < hits.size(); ++next) {
+            hits[count] = next;
+            count += bits() < limit ? 1U : 0U;
+        }
+        return count;
+    }
 
     /// Uniform in [low, high).
     float uniform(float low, float high) { return low + (high - low) * uniform(); }
@@ -67,6 +99,14 @@ public:
     friend bool operator==(RandomStream const&, RandomStream const&) = default;
 
 private:
+    static constexpr std::uint64_t kMultiplier = 6364136223846793005ULL;
+
+    static std::uint32_t output(std::uint64_t state) {
+        auto const shifted = static_cast<std::uint32_t>(((state >> 18U) ^ state) >> 27U);
+        auto const turn = static_cast<std::uint32_t>(state >> 59U);
+        return (shifted >> turn) | (shifted << ((32U - turn) & 31U));
+    }
+
     std::uint64_t state_;
     std::uint64_t increment_;
 };

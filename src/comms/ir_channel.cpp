@@ -9,21 +9,11 @@ namespace pogosim {
 
 namespace {
 
-constexpr std::size_t kReceiversAtOnce = 128;  // their mailboxes fit in the cache
+constexpr std::size_t kArrivalsAtOnce = 128;  // their mailboxes fit in the cache
 // Smallest sizes of a part that one worker takes.
 constexpr std::uint32_t kLeastTransmissions = 64;
 constexpr std::uint32_t kLeastReceivers = 256;
 constexpr std::size_t kAhead = 8;  // a mailbox is prefetched this many arrivals ahead
-
-/// Observes nothing, at no cost.
-struct NoObserver {
-    void reached_none(std::uint32_t /*transmission*/) const {}
-    void reached(std::uint32_t /*transmission*/, std::size_t /*receivers*/, float /*probability*/) const {}
-    void lost(World const& /*world*/, Visibility const& /*visibility*/, Transmission const& /*transmission*/,
-              Receiver const& /*receiver*/) const {}
-    void received(World const& /*world*/, Receiver const& /*receiver*/, std::uint8_t /*faces*/,
-                  std::uint8_t /*queued*/) const {}
-};
 
 class LogObserver {
 public:
@@ -95,48 +85,53 @@ void IrChannel::deliver(World& world, DeliveryLog* log, WorkerPool* workers) {
         if (is_shared) {
             deliver_shared(world, *workers);
         } else {
-            NoObserver none;
-            deliver_all(world, none);
+            deliver_all(world);
         }
         world.air.clear();
         return;
     }
     log->step = world.step;
     log->deliveries.clear();
-    LogObserver observer(log->deliveries);
-    deliver_all(world, observer);
+    deliver_logged(world, log->deliveries);
     log->air.clear();
     std::swap(world.air, log->air);
 }
 
-template <class Observer>
-void IrChannel::deliver_all(World& world, Observer& observer) {
+void IrChannel::prepare(World const& world, std::size_t workers) {
+    assert_air(world);
+    visibility_.update(world);
+    desks_.resize(std::max(desks_.size(), workers));
+    for (Desk& desk : desks_) {
+        desk.reception.resize(world.categories.size());
+    }
+}
+
+void IrChannel::deliver_all(World& world) {
     if (world.air.transmissions.empty()) {
         return;
     }
-    assert_air(world);
-    visibility_.update(world);
-    reception_.resize(world.categories.size());
-    std::size_t const count = world.air.transmissions.size();
-    for (std::size_t next = 0; next < count;) {
-        // Finds the receivers of some transmissions, while their mailboxes are prefetched.
-        std::size_t const begin = next;
-        found_.clear();
-        reached_.clear();
+    prepare(world, /*workers=*/1);
+    Desk& desk = desks_.front();
+    auto const count = static_cast<std::uint32_t>(world.air.transmissions.size());
+    for (std::uint32_t next = 0; next < count;) {
+        // Sends some transmissions, while the mailboxes of their receivers are prefetched.
+        arrivals_.clear();
         do {
-            Transmission const& transmission = world.air.transmissions[next++];
-            std::size_t const first = found_.size();
-            visibility_.find_receivers(world, transmission.robot, transmission.emitters, transmission.range_mm, found_);
-            reached_.push_back(found_.size());
-            for (std::size_t k = first; k < found_.size(); ++k) {
-                world.mailboxes.expect_push(found_[k].robot);
+            Transmission const& transmission = world.air.transmissions[next];
+            auto const found =
+                visibility_.find(world, transmission.robot, transmission.emitters, transmission.range_mm, desk.search);
+            if (found.is_worth_keeping) {
+                visibility_.keep(transmission.robot, transmission.emitters, transmission.range_mm, found.receivers);
             }
-        } while (next < count && found_.size() < kReceiversAtOnce);
-        std::size_t first = 0;
-        for (std::size_t i = begin; i < next; ++i) {
-            std::size_t const end = reached_[i - begin];
-            deliver_one(world, static_cast<std::uint32_t>(i), std::span(found_).subspan(first, end - first), observer);
-            first = end;
+            attempts_ += found.receivers.size();
+            receptions_ += draw_arrivals(world, next, found, desk, [&](Arrival const& arrival) {
+                arrivals_.push_back(arrival);
+                world.mailboxes.expect_push(arrival.receiver);
+            });
+            ++next;
+        } while (next < count && arrivals_.size() < kArrivalsAtOnce);
+        for (Arrival const& arrival : arrivals_) {
+            push(world, arrival);
         }
     }
 }
@@ -144,12 +139,7 @@ void IrChannel::deliver_all(World& world, Observer& observer) {
 /// First all messages are sent, the senders divided into parts; then all arrive, the receivers divided into blocks, so
 /// that each mailbox has one worker.
 void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
-    assert_air(world);
-    visibility_.update(world);
-    desks_.resize(workers.size());
-    for (Desk& desk : desks_) {
-        desk.reception.resize(world.categories.size());
-    }
+    prepare(world, workers.size());
     part_transmissions(world, workers);
     workers.run(static_cast<std::uint32_t>(parts_.size()),
                 [&](std::uint32_t part, std::uint32_t worker) { find_arrivals(world, parts_[part], desks_[worker]); });
@@ -167,11 +157,8 @@ void IrChannel::deliver_shared(World& world, WorkerPool& workers) {
         for (Part const& part : parts_) {
             std::vector<Arrival> const& arrivals = part.arrivals[block];
             for (std::size_t k = 0; k < arrivals.size(); ++k) {
-                Arrival const& arrival = arrivals[k];
                 world.mailboxes.expect_push(arrivals[std::min(k + kAhead, arrivals.size() - 1)].receiver);
-                Transmission const& transmission = world.air.transmissions[arrival.transmission];
-                world.mailboxes.deliver(arrival.receiver, transmission.header, world.air.payload_of(transmission),
-                                        transmission.kind, arrival.faces);
+                push(world, arrivals[k]);
             }
         }
     });
@@ -204,59 +191,94 @@ void IrChannel::find_arrivals(World& world, Part& part, Desk& desk) const {
     }
 }
 
-/// Appends the receivers of the transmission to the part: see deliver_one().
+/// Appends the arrivals of the transmission to the part.
 void IrChannel::find_arrivals_of(World& world, std::uint32_t index, Part& part, Desk& desk) const {
     Transmission const& transmission = world.air.transmissions[index];
-    std::vector<Receiver>& found = desk.found;
-    found.clear();
-    if (visibility_.find(world, transmission.robot, transmission.emitters, transmission.range_mm, desk.search, found)) {
+    auto const found =
+        visibility_.find(world, transmission.robot, transmission.emitters, transmission.range_mm, desk.search);
+    auto const receivers = found.receivers;
+    if (found.is_worth_keeping) {
         part.kept.push_back({.transmission = index,
                              .first = static_cast<std::uint32_t>(part.kept_receivers.size()),
-                             .count = static_cast<std::uint32_t>(found.size())});
-        part.kept_receivers.insert(part.kept_receivers.end(), found.begin(), found.end());
+                             .count = static_cast<std::uint32_t>(receivers.size())});
+        part.kept_receivers.insert(part.kept_receivers.end(), receivers.begin(), receivers.end());
     }
-    if (found.empty()) {
-        return;
-    }
-    float const probability = probability_of(world, transmission, found.size(), desk.reception);
-    RandomStream& stream = world.robots.stream[transmission.robot];
-    part.attempts += found.size();
+    part.attempts += receivers.size();
     std::uint64_t const blocks = part.arrivals.size();
-    for (Receiver const& receiver : found) {
-        if (stream.uniform() >= probability) {
-            continue;
-        }
-        ++part.receptions;
-        part.arrivals[receiver.robot * blocks / world.robots.size()].push_back(
-            {.receiver = receiver.robot,
-             .transmission = index,
-             .faces = visibility_.faces_of(world, receiver, transmission.range_mm)});
-    }
+    part.receptions += draw_arrivals(world, index, found, desk, [&](Arrival const& arrival) {
+        part.arrivals[arrival.receiver * blocks / world.robots.size()].push_back(arrival);
+    });
 }
 
-template <class Observer>
-void IrChannel::deliver_one(World& world, std::uint32_t index, std::span<Receiver const> receivers,
-                            Observer& observer) {
-    Transmission const& transmission = world.air.transmissions[index];
+/// Draws for each receiver whether it gets the transmission. Calls arrive(arrival) for those that do, in their order,
+/// and returns how many do.
+template <class Arrive>
+std::size_t IrChannel::draw_arrivals(World& world, std::uint32_t index, Visibility::Found const& found, Desk& desk,
+                                     Arrive const& arrive) const {
+    auto const receivers = found.receivers;
     if (receivers.empty()) {
-        observer.reached_none(index);
+        return 0;
+    }
+    Transmission const& transmission = world.air.transmissions[index];
+    float const probability = probability_of(world, transmission, receivers.size(), desk.reception);
+    if (desk.hits.size() < receivers.size()) {
+        desk.hits.resize(receivers.size());
+    }
+    auto const hits = std::span(desk.hits).first(receivers.size());
+    std::size_t const count = world.robots.stream[transmission.robot].hits_of(probability, hits);
+    if (!found.hearers.empty()) {
+        for (std::uint32_t const hit : hits.first(count)) {
+            Hearer const hearer = found.hearers[hit];
+            arrive({.receiver = hearer.robot, .transmission = index, .faces = static_cast<std::uint8_t>(hearer.faces)});
+        }
+        return count;
+    }
+    for (std::uint32_t const hit : hits.first(count)) {
+        Receiver const& receiver = receivers[hit];
+        arrive({.receiver = receiver.robot,
+                .transmission = index,
+                .faces = visibility_.faces_of(world, receiver, transmission.range_mm)});
+    }
+    return count;
+}
+
+void IrChannel::push(World& world, Arrival const& arrival) {
+    Transmission const& transmission = world.air.transmissions[arrival.transmission];
+    world.mailboxes.deliver(arrival.receiver, transmission.header, world.air.payload_of(transmission),
+                            transmission.kind, arrival.faces);
+}
+
+/// As deliver_all(), one receiver after the other.
+void IrChannel::deliver_logged(World& world, std::vector<Delivery>& deliveries) {
+    if (world.air.transmissions.empty()) {
         return;
     }
-    float const probability = probability_of(world, transmission, receivers.size(), reception_);
-    observer.reached(index, receivers.size(), probability);
-    std::span<std::byte const> const payload = world.air.payload_of(transmission);
-    RandomStream& stream = world.robots.stream[transmission.robot];
-    attempts_ += receivers.size();
-    for (Receiver const& receiver : receivers) {
-        if (stream.uniform() >= probability) {
-            observer.lost(world, visibility_, transmission, receiver);
+    prepare(world, /*workers=*/1);
+    LogObserver observer(deliveries);
+    for (std::uint32_t i = 0; i < world.air.transmissions.size(); ++i) {
+        Transmission const& transmission = world.air.transmissions[i];
+        auto const receivers =
+            visibility_.receivers(world, transmission.robot, transmission.emitters, transmission.range_mm);
+        if (receivers.empty()) {
+            observer.reached_none(i);
             continue;
         }
-        ++receptions_;
-        std::uint8_t const faces = visibility_.faces_of(world, receiver, transmission.range_mm);
-        unsigned const queued =
-            world.mailboxes.deliver(receiver.robot, transmission.header, payload, transmission.kind, faces);
-        observer.received(world, receiver, faces, static_cast<std::uint8_t>(queued));
+        float const probability = probability_of(world, transmission, receivers.size(), desks_.front().reception);
+        observer.reached(i, receivers.size(), probability);
+        std::span<std::byte const> const payload = world.air.payload_of(transmission);
+        RandomStream& stream = world.robots.stream[transmission.robot];
+        attempts_ += receivers.size();
+        for (Receiver const& receiver : receivers) {
+            if (stream.uniform() >= probability) {
+                observer.lost(world, visibility_, transmission, receiver);
+                continue;
+            }
+            ++receptions_;
+            std::uint8_t const faces = visibility_.faces_of(world, receiver, transmission.range_mm);
+            unsigned const queued =
+                world.mailboxes.deliver(receiver.robot, transmission.header, payload, transmission.kind, faces);
+            observer.received(world, receiver, faces, static_cast<std::uint8_t>(queued));
+        }
     }
 }
 

@@ -33,11 +33,6 @@ public:
     std::uint64_t receptions() const { return receptions_; }
 
 private:
-    template <class Observer>
-    void deliver_all(World& world, Observer& observer);
-    template <class Observer>
-    void deliver_one(World& world, std::uint32_t transmission, std::span<Receiver const> receivers, Observer& observer);
-
     /// A message that a robot receives.
     struct Arrival {
         std::uint32_t receiver;
@@ -67,22 +62,27 @@ private:
     struct Desk {
         Visibility::Search search;
         std::vector<ReceptionTable> reception;  // by category
-        std::vector<Receiver> found;
+        std::vector<std::uint32_t> hits;        // receivers whose draws succeed
     };
 
+    void prepare(World const& world, std::size_t workers);
+    void deliver_all(World& world);
+    void deliver_logged(World& world, std::vector<Delivery>& deliveries);
     void deliver_shared(World& world, WorkerPool& workers);
     void part_transmissions(World const& world, WorkerPool const& workers);
     void find_arrivals(World& world, Part& part, Desk& desk) const;
     void find_arrivals_of(World& world, std::uint32_t transmission, Part& part, Desk& desk) const;
+    template <class Arrive>
+    std::size_t draw_arrivals(World& world, std::uint32_t transmission, Visibility::Found const& found, Desk& desk,
+                              Arrive const& arrive) const;
+    static void push(World& world, Arrival const& arrival);
 
     std::vector<Part> parts_;
     std::vector<std::uint32_t> ends_;  // of the parts, see split_by_sender()
     std::vector<Desk> desks_;
+    std::vector<Arrival> arrivals_;  // of some transmissions
 
     Visibility visibility_;
-    std::vector<ReceptionTable> reception_;  // by category
-    std::vector<Receiver> found_;            // receivers of some transmissions, concatenated
-    std::vector<std::size_t> reached_;       // ends of their receivers in found_
     std::uint64_t attempts_ = 0;
     std::uint64_t receptions_ = 0;
 };

@@ -19,6 +19,7 @@ void ReceiverCache::clear(std::size_t robot_count) {
         lists.clear();
     }
     pool_.clear();
+    hearers_.clear();
     in_use_ = 0;
 }
 
@@ -36,12 +37,14 @@ bool ReceiverCache::make_room(List& list, std::size_t count) {
             std::ranges::fill(lists, List{});
         }
         pool_.clear();
+        hearers_.clear();
         in_use_ = 0;
     }
     in_use_ += count - list.room;
     list.first = static_cast<std::uint32_t>(pool_.size());
     list.room = static_cast<std::uint32_t>(count);
     pool_.resize(pool_.size() + count);
+    hearers_.resize(pool_.size());
     return true;
 }
 
@@ -61,6 +64,9 @@ void ReceiverCache::store(std::uint32_t robot, std::uint8_t emitters, float rang
     list.emitters = emitters;
     list.count = static_cast<std::uint32_t>(receivers.size());
     std::ranges::copy(receivers, pool_.begin() + list.first);
+    std::ranges::transform(receivers, hearers_.begin() + list.first, [](Receiver const& receiver) {
+        return Hearer{.robot = receiver.robot, .faces = receiver.faces};
+    });
 }
 
 }  // namespace pogosim

@@ -24,6 +24,13 @@ struct Receiver {
     bool is_along_outline = false;  // it or the sender is a wall or membrane: no vector, and faces is known
 };
 
+/// What matters of a receiver when a message arrives, in a quarter of the memory.
+struct Hearer {
+    std::uint32_t robot : 28;
+    std::uint32_t faces : 4;  // bit d: its face d receives
+};
+static_assert(sizeof(Hearer) == sizeof(std::uint32_t) && kMostFaces <= 4);
+
 class ReceiverCache {
 public:
     /// Empties the cache, for `robot_count` robots.
@@ -52,7 +59,12 @@ public:
         return std::span(pool_).subspan(list.first, list.count);
     }
 
-    /// Replaces the cached receivers of such a transmission, unless there are too many.
+    /// The same receivers, in the same order.
+    std::span<Hearer const> hearers(List const& list) const {
+        return std::span(hearers_).subspan(list.first, list.count);
+    }
+
+    /// Replaces the cached receivers of such a transmission, unless there are too many. Their faces are known.
     void store(std::uint32_t robot, std::uint8_t emitters, float range_mm, std::uint32_t changes,
                std::span<Receiver const> receivers);
 
@@ -69,7 +81,8 @@ private:
     std::size_t robot_count_ = 0;
     std::array<std::vector<List>, kKinds> lists_;  // by robot; empty before the first such transmission
     std::vector<Receiver> pool_;
-    std::size_t in_use_ = 0;  // size of the pool in use; the rest belonged to lists that have grown
+    std::vector<Hearer> hearers_;  // of the pool
+    std::size_t in_use_ = 0;       // size of the pool in use; the rest belonged to lists that have grown
 };
 
 }  // namespace pogosim

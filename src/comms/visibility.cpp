@@ -142,41 +142,34 @@ void Visibility::note_switched(World const& world) {
 
 std::span<Receiver const> Visibility::receivers(World const& world, std::uint32_t robot, std::uint8_t emitters,
                                                 float range_mm) {
-    found_.clear();
-    find_receivers(world, robot, emitters, range_mm, found_);
-    return found_;
-}
-
-void Visibility::find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                                std::vector<Receiver>& receivers) {
-    std::size_t const first = receivers.size();
-    if (find(world, robot, emitters, range_mm, search_, receivers)) {
-        keep(robot, emitters, range_mm, std::span(receivers).subspan(first));
+    Found const found = find(world, robot, emitters, range_mm, search_);
+    if (found.is_worth_keeping) {
+        keep(robot, emitters, range_mm, found.receivers);
     }
+    return found.receivers;
 }
 
-bool Visibility::find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
-                      std::vector<Receiver>& receivers) const {
+Visibility::Found Visibility::find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
+                                   Search& search) const {
     if (range_mm <= 0.0F) {
-        return false;
+        return {};
     }
     Sender const& sender = senders_[robot];
     ReceiverCache::List const* const known = cache_.find(robot, emitters, range_mm);
     if (known != nullptr && is_unchanged(world, known->changes, sender, range_mm)) {
-        auto const kept = cache_.receivers(*known);
-        receivers.insert(receivers.end(), kept.begin(), kept.end());
-        return false;
+        return {.receivers = cache_.receivers(*known), .hearers = cache_.hearers(*known)};
     }
-    std::size_t const first = receivers.size();
+    std::vector<Receiver>& receivers = search.found;
+    receivers.clear();
     find_anew(world, robot, emitters, range_mm, search, receivers);
     // Worth caching only if nothing has moved.
-    if (!is_unchanged(world, cells_.changes_before(), sender, range_mm)) {
-        return false;
+    bool const is_worth_keeping = is_unchanged(world, cells_.changes_before(), sender, range_mm);
+    if (is_worth_keeping) {
+        for (Receiver& receiver : receivers) {
+            receiver.faces = faces_of(world, receiver, range_mm);
+        }
     }
-    for (Receiver& receiver : std::span(receivers).subspan(first)) {
-        receiver.faces = faces_of(world, receiver, range_mm);
-    }
-    return true;
+    return {.receivers = receivers, .is_worth_keeping = is_worth_keeping};
 }
 
 bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender const& sender, float range_mm) const {
@@ -188,27 +181,24 @@ bool Visibility::is_unchanged(World const& world, std::uint32_t since, Sender co
 
 void Visibility::find_anew(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
                            Search& search, std::vector<Receiver>& receivers) const {
-    auto const first = static_cast<std::ptrdiff_t>(receivers.size());
     if (senders_[robot].body != kNone) {
         blockers_.find_near(world, world.bodies.position_mm[senders_[robot].body],
                             search_radius_mm(senders_[robot], range_mm), search.blockers);
         add_robots_in_view(world, robot, emitters, range_mm, search, receivers);
         if (!all_hear_around_) {
-            leave_out_deaf(world, range_mm, static_cast<std::size_t>(first), receivers);
+            leave_out_deaf(world, range_mm, receivers);
         }
         if (!outlines_.empty()) {
             add_outlines_near(world, robot, emitters, range_mm, search, receivers);
         }
-        std::sort(receivers.begin() + first, receivers.end(),
+        std::sort(receivers.begin(), receivers.end(),
                   [](Receiver const& a, Receiver const& b) { return a.robot < b.robot; });
     } else if ((emitters & 1U) != 0) {
         bool const repeats = world.original_wall_copies && emitters != kAllFaces;
         add_robots_near(world, outline_of(world, robot), range_mm, repeats, search, receivers);
     }
     if (!world.switched_off.empty()) {
-        receivers.erase(std::remove_if(receivers.begin() + first, receivers.end(),
-                                       [&](Receiver const& receiver) { return !is_alive(world, receiver.robot); }),
-                        receivers.end());
+        std::erase_if(receivers, [&](Receiver const& receiver) { return !is_alive(world, receiver.robot); });
     }
 }
 
@@ -252,16 +242,12 @@ std::uint8_t Visibility::faces_of(World const& world, Receiver const& receiver, 
                           world.ignore_occlusions);
 }
 
-/// Robots from `first` on that do not hear the transmission, because their faces look elsewhere.
-void Visibility::leave_out_deaf(World const& world, float range_mm, std::size_t first,
-                                std::vector<Receiver>& receivers) const {
-    auto const begin = receivers.begin() + static_cast<std::ptrdiff_t>(first);
-    for (auto receiver = begin; receiver != receivers.end(); ++receiver) {
-        receiver->faces = faces_of(world, *receiver, range_mm);
+/// Robots that do not hear the transmission, because their faces look elsewhere.
+void Visibility::leave_out_deaf(World const& world, float range_mm, std::vector<Receiver>& receivers) const {
+    for (Receiver& receiver : receivers) {
+        receiver.faces = faces_of(world, receiver, range_mm);
     }
-    receivers.erase(
-        std::remove_if(begin, receivers.end(), [](Receiver const& receiver) { return receiver.faces == 0; }),
-        receivers.end());
+    std::erase_if(receivers, [](Receiver const& receiver) { return receiver.faces == 0; });
 }
 
 void Visibility::add_outlines_near(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,

@@ -33,30 +33,34 @@ public:
         NearbyBlockers blockers;
         std::vector<OutlineIndex::Piece> pieces;
         std::vector<std::uint8_t> outline_emitters;  // by outline: bit d: emitter d reaches it
+        std::vector<Receiver> found;
     };
 
     /// Takes the present robots and outlines. Call before the queries, with the same world each time.
     void update(World const& world);
 
-    /// Appends the robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`: each
-    /// once, through the nearest emitter that sees it, in the order of their indices. An outline has a single emitter,
-    /// number 0. Robots that are switched off hide others, but receive nothing. With World::original_wall_copies, a
-    /// robot stands in the list of an outline once for each face that hears it, unless all emitters send together.
-    void find_receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm,
-                        std::vector<Receiver>& receivers);
+    /// The robots that the given emitters of `robot` (bit d: emitter d) reach at a range of `range_mm`: each once,
+    /// through the nearest emitter that sees it, in the order of their indices. An outline has a single emitter, number
+    /// 0. Robots that are switched off hide others, but receive nothing. With World::original_wall_copies, a robot
+    /// stands in the list of an outline once for each face that hears it, unless all emitters send together. Valid
+    /// until the next call.
+    std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
-    /// The same, without changing the cache, so that several threads may search at once. Returns whether the result
-    /// should be passed to keep().
-    bool find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search,
-              std::vector<Receiver>& receivers) const;
+    /// What find() has found. The receivers are in the cache, or in the memory of the search.
+    struct Found {
+        std::span<Receiver const> receivers;
+        std::span<Hearer const> hearers{};  // the same receivers, if they are in the cache; else empty
+        bool is_worth_keeping = false;      // with keep()
+    };
 
-    /// Caches the receivers for as long as nothing within range moves.
+    /// The same, without changing the cache, so that several threads may search at once. Valid until the next search
+    /// with that memory, or the next keep().
+    Found find(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm, Search& search) const;
+
+    /// Caches the receivers for as long as nothing within range moves. They must not be in the cache.
     void keep(std::uint32_t robot, std::uint8_t emitters, float range_mm, std::span<Receiver const> receivers) {
         cache_.store(robot, emitters, range_mm, cells_.changes(), receivers);
     }
-
-    /// As find_receivers(). Valid until the next call.
-    std::span<Receiver const> receivers(World const& world, std::uint32_t robot, std::uint8_t emitters, float range_mm);
 
     /// Faces of a receiver of a transmission of this range at which the message arrives: bit d for face d.
     std::uint8_t faces_of(World const& world, Receiver const& receiver, float range_mm) const;
@@ -112,7 +116,7 @@ private:
     };
 
     std::uint32_t faces_index(World const& world, std::uint32_t robot);
-    void leave_out_deaf(World const& world, float range_mm, std::size_t first, std::vector<Receiver>& receivers) const;
+    void leave_out_deaf(World const& world, float range_mm, std::vector<Receiver>& receivers) const;
 
     std::vector<Sender> senders_;
     std::vector<Make> makes_;
@@ -125,7 +129,6 @@ private:
     OutlineIndex outlines_;
     InfraredBlockers blockers_;
     Search search_;
-    std::vector<Receiver> found_;
 };
 
 /// Distance from a robot's centre to its farthest face, mm: 0 at the centre, or for an outline.

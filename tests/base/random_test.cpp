@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace pogosim {
 namespace {
@@ -80,6 +83,25 @@ TEST(RandomStream, NeighbouringStreamsAreNotCorrelated) {
         sum += (a.uniform() - 0.5) * (b.uniform() - 0.5);
     }
     EXPECT_NEAR(sum / kDraws, 0.0, 4.0 / 12.0 / std::sqrt(kDraws));
+}
+
+TEST(RandomStream, HitsAreTheDrawsBelowTheProbability) {
+    for (float const probability : {-1.0F, 0.0F, 1e-30F, 0x1p-24F, 0.1F, 0.3F, 0.5F, 1.0F - 0x1p-24F, 1.0F, 2.0F}) {
+        for (std::size_t const count : {0U, 1U, 3U, 4U, 5U, 6U, 1000U}) {
+            RandomStream one_by_one(3, 7);
+            RandomStream together(3, 7);
+            std::vector<std::uint32_t> expected;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                if (one_by_one.uniform() < probability) {
+                    expected.push_back(i);
+                }
+            }
+            std::vector<std::uint32_t> hits(count);
+            hits.resize(together.hits_of(probability, hits));
+            EXPECT_EQ(hits, expected) << probability << ", " << count;
+            EXPECT_EQ(together, one_by_one) << probability << ", " << count;
+        }
+    }
 }
 
 }  // namespace
