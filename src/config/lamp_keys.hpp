@@ -20,14 +20,6 @@ inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 /// `x` and `y` of a lighthouse.
 std::span<Key<Vec2> const> lighthouse_centre_keys();
 
-/// The light of a spot, its photo start, and its `x` and `y`. Its shape has been read before.
-void read_spot(MapReader& reader, SpotSpec& spot);
-
-/// False for light that is the same wherever the lamp stands, or that one coordinate alone may place: a plane.
-inline bool has_place(SpotSpec const& spot) {
-    return !is_everywhere(spot.shape) || spot.mode == LightMode::gradient;
-}
-
 /// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps
 /// have always taken 0.)
 void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "base/memory.hpp"
 
@@ -19,16 +18,8 @@ std::string cells_text(LightMap const& map) {
     return fmt::format("{} x {} cells", map.columns, map.rows);
 }
 
-std::unique_ptr<Lamp> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
-    return std::visit(
-        [&](auto changed) {
-            changed.centre_mm = changed.centre_mm + setting.moved_mm;
-            if (setting.intensity != 1.0F) {
-                changed.scale_levels(setting.intensity);
-            }
-            return make_lamp(changed, world.arena, world.light);
-        },
-        spec);
+std::shared_ptr<Lamp const> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
+    return spec.make(setting.moved_mm, setting.intensity, world.arena, world.light);
 }
 
 }  // namespace

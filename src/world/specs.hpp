@@ -11,7 +11,7 @@
 
 #include "geometry/shape.hpp"
 #include "world/brain_spec.hpp"
-#include "world/lamp_specs.hpp"
+#include "world/lamp_spec.hpp"
 #include "world/robot_model.hpp"
 
 namespace pogosim {

@@ -13,6 +13,9 @@
 #include "config/source.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
+#include "lamps/alternating_rays_lamp.hpp"
+#include "lamps/rotating_ray_lamp.hpp"
+#include "lamps/spot_lamp.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -24,7 +27,7 @@ RobotSpec robot(std::string const& keys) {
 }
 
 SpotSpec spot_of(ObjectConfig const& object) {
-    return std::get<SpotSpec>(*object.spec.lamp);
+    return *object.spec.lamp->get_if<SpotSpec>();
 }
 
 SpotSpec lamp(std::string const& keys) {
@@ -444,7 +447,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    auto const spec = [&](std::size_t i) { return std::get<RotatingRaySpec>(*s.objects.at(i).spec.lamp); };
+    auto const spec = [&](std::size_t i) { return *s.objects.at(i).spec.lamp->get_if<RotatingRaySpec>(); };
     EXPECT_EQ(spec(2).shape.kind, ShapeKind::triangle);
     EXPECT_EQ(spec(2).shape.side_length_mm, 8.0F);
     EXPECT_EQ(spec(2).centre_mm, (Vec2{11, 12}));
@@ -487,7 +490,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    auto const spec = [&](std::size_t i) { return std::get<AlternatingRaysSpec>(*s.objects.at(i).spec.lamp); };
+    auto const spec = [&](std::size_t i) { return *s.objects.at(i).spec.lamp->get_if<AlternatingRaysSpec>(); };
     EXPECT_EQ(spec(2).shape.kind, ShapeKind::rectangle);
     EXPECT_EQ(spec(2).shape.width_mm, 6.0F);
     EXPECT_EQ(spec(2).shape.height_mm, 7.0F);
