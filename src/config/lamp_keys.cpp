@@ -1,16 +1,39 @@
 #include "config/lamp_keys.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <array>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include "base/log.hpp"
 #include "config/shape_keys.hpp"
 
 namespace pogosim {
+
+namespace {
+
+std::span<Key<LampSpec> const> lamp_keys() {
+    using K = Key<LampSpec>;
+    static std::array const keys{
+        K{"casts_shadows", &LampSpec::casts_shadows, any(), "",
+          "Walls and bodies hide the lamp from the cells of the light map behind them; see `walls_block_light` and "
+          "`blocks_light`. Not for light without a place: `geometry` global or arena, unless it is a gradient, and "
+          "planes."}
+            .only_if([](LampSpec const& lamp) { return lamp.casts_shadows; }),
+    };
+    return keys;
+}
+
+}  // namespace
+
+void make_lamp_object(MapReader& reader, ObjectConfig& object, LampSpec lamp, bool has_place) {
+    reader.read(lamp_keys(), lamp);
+    if (lamp.casts_shadows && !has_place) {
+        reader.refuse("casts_shadows",
+                      "this light comes from no place, so nothing can be in its way; use a lamp with a place, such as "
+                      "light_mode gradient, or geometry disk");
+    }
+    object.spec.lamp = std::move(lamp);
+}
 
 std::span<Key<Vec2> const> lighthouse_centre_keys() {
     using K = Key<Vec2>;

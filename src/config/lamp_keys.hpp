@@ -6,6 +6,7 @@
 
 #include "config/key.hpp"
 #include "config/map_reader.hpp"
+#include "config/scenario.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
@@ -19,6 +20,10 @@ inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 
 /// `x` and `y` of a lighthouse.
 std::span<Key<Vec2> const> lighthouse_centre_keys();
+
+/// Makes the object this lamp, whose own keys have been read, and reads those that all lamps have. Light without a
+/// place, such as the same level everywhere, casts no shadows.
+void make_lamp_object(MapReader& reader, ObjectConfig& object, LampSpec lamp, bool has_place);
 
 /// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps
 /// have always taken 0.)

@@ -103,6 +103,11 @@ public:
         }
     }
 
+    /// A flash comes from the lighthouse whose beam follows.
+    Vec2 source_mm(LampState const& state) const override {
+        return state.phase == long_white || state.phase == ray_1 ? first_.corner_mm : second_.corner_mm;
+    }
+
     void mark(LampState const& state, std::vector<LampMark>& marks) const override {
         marks.push_back(first_.mark(spec_, state, state.phase == ray_1));
         marks.push_back(second_.mark(spec_, state, state.phase == ray_2));
@@ -151,7 +156,7 @@ inline void read_alternating_rays_of_light(MapReader& reader, ObjectConfig& obje
         warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
     }
     reader.read(alternating_rays_keys(), spec);
-    object.spec.lamp = spec;
+    make_lamp_object(reader, object, spec, /*has_place=*/true);
 }
 
 }  // namespace alternating_rays

@@ -1,4 +1,4 @@
-// The types of lamps that a configuration can name: a line for each, beside the file where all of it is, its parameters,
+// The types of lamps that a configuration can name: a line for each. All else about it is in one file: its parameters,
 // its keys and its light.
 #include <array>
 #include <span>

@@ -75,6 +75,8 @@ public:
         }
     }
 
+    Vec2 source_mm(LampState const&) const override { return apex_mm_; }
+
     void mark(LampState const& state, std::vector<LampMark>& marks) const override {
         bool const is_on = state.phase == beam;
         marks.push_back({.centre_mm = apex_mm_,
@@ -121,7 +123,7 @@ inline void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object) 
         warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
     }
     reader.read(rotating_ray_keys(), spec);
-    object.spec.lamp = spec;
+    make_lamp_object(reader, object, spec, /*has_place=*/true);
 }
 
 }  // namespace rotating_ray

@@ -135,6 +135,8 @@ public:
 
     void paint(LampState const& state, LightMap& map, std::vector<std::uint32_t>& painted) const override;
 
+    Vec2 source_mm(LampState const& state) const override { return centre_mm(state); }
+
     void mark(LampState const& state, std::vector<LampMark>& marks) const override {
         if (!is_everywhere(spec_.shape) || spec_.mode == LightMode::gradient) {
             marks.push_back({.centre_mm = centre_mm(state), .shape = spec_.shape, .shape_mm = centre_mm(state)});
@@ -283,7 +285,7 @@ inline void read_static_light(MapReader& reader, ObjectConfig& object) {
     if (has_place(spec)) {
         warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
     }
-    object.spec.lamp = spec;
+    make_lamp_object(reader, object, spec, spec.mode != LightMode::plane && has_place(spec));
 }
 
 struct OrbitCentre {
@@ -331,7 +333,7 @@ inline void read_orbiting_static_light(MapReader& reader, ObjectConfig& object) 
                                 spec.centre_mm);
     }
     reader.read(orbit_keys(), spec.orbit);
-    object.spec.lamp = spec;
+    make_lamp_object(reader, object, spec, spec.mode != LightMode::plane && has_place(spec));
 }
 
 }  // namespace spot

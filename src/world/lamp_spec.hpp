@@ -59,7 +59,11 @@ public:
         return kind_->make(moved_mm, intensity, arena, map);
     }
 
-    friend bool operator==(LampSpec const& a, LampSpec const& b) { return a.kind_->equals(*b.kind_); }
+    bool casts_shadows = false;  // walls and bodies hide it
+
+    friend bool operator==(LampSpec const& a, LampSpec const& b) {
+        return a.casts_shadows == b.casts_shadows && a.kind_->equals(*b.kind_);
+    }
 
 private:
     struct Kind {
