@@ -7,8 +7,6 @@ namespace pogosim {
 
 namespace {
 
-constexpr int kCornersOfATurn = 32;  // of rounded corners
-
 bool passes_disk(Vec2 from, Vec2 to, Vec2 centre, float radius) {
     return squared_length(nearest_on_segment(from, to, centre) - centre) < radius * radius;
 }
@@ -44,31 +42,7 @@ void InfraredBlockers::start(World const& world) {
     if (world.walls_block_infrared && !world.periodic) {
         walls_.emplace(world.arena);
     }
-    blockers_.clear();
-    std::vector<BodySpec> const& specs = world.bodies.spec;
-    std::vector<bool> is_in_membrane(specs.size(), false);
-    for (Membrane const& membrane : world.membranes) {
-        for (std::uint32_t k = 0; k < membrane.body_count; ++k) {
-            std::uint32_t const body = membrane.body + k;
-            is_in_membrane[body] = true;
-            if (specs[body].blocks_infrared) {
-                blockers_.push_back(
-                    {.body = body, .next_body = membrane.body + (k + 1) % membrane.body_count, .corners = {}});
-            }
-        }
-    }
-    for (std::uint32_t body = 0; body < specs.size(); ++body) {
-        if (specs[body].blocks_infrared && !is_in_membrane[body]) {
-            Shape const& shape = world.bodies.shape[body];
-            if (shape.kind == ShapeKind::disk) {
-                blockers_.push_back({.body = body, .corners = {}});
-                continue;
-            }
-            for (Polygon& part : outlines(shape, kCornersOfATurn)) {
-                blockers_.push_back({.body = body, .corners = std::move(part)});
-            }
-        }
-    }
+    blockers_ = blockers_of(world, &BodySpec::blocks_infrared);
     poses_.clear();
     for (Blocker const& blocker : blockers_) {
         poses_.push_back(pose_of(world, blocker));
@@ -76,20 +50,10 @@ void InfraredBlockers::start(World const& world) {
     sort(world);
 }
 
-InfraredBlockers::Pose InfraredBlockers::pose_of(World const& world, Blocker const& blocker) {
-    Bodies const& bodies = world.bodies;
-    Vec2 const position_mm = bodies.position_mm[blocker.body];
-    if (blocker.next_body == kNone) {
-        return {position_mm, bodies.heading_dir[blocker.body], bodies.radius_mm[blocker.body]};
-    }
-    Vec2 const half_mm = 0.5F * minimum_image(world, position_mm, bodies.position_mm[blocker.next_body]);
-    return {position_mm + half_mm, half_mm, length(half_mm)};
-}
-
 void InfraredBlockers::sort(World const& world) {
     positions_mm_.clear();
     largest_radius_mm_ = 0.0F;
-    for (Pose const& pose : poses_) {
+    for (BlockerPose const& pose : poses_) {
         positions_mm_.push_back(pose.position_mm);
         largest_radius_mm_ = std::max(largest_radius_mm_, pose.radius_mm);
     }
@@ -102,7 +66,7 @@ void InfraredBlockers::sort(World const& world) {
 void InfraredBlockers::update(World const& world, NeighbourCells& cells) {
     bool has_moved = false;
     for (std::size_t i = 0; i < blockers_.size(); ++i) {
-        Pose const pose = pose_of(world, blockers_[i]);
+        BlockerPose const pose = pose_of(world, blockers_[i]);
         if (pose == poses_[i]) {
             continue;
         }
@@ -118,7 +82,7 @@ void InfraredBlockers::update(World const& world, NeighbourCells& cells) {
 
 void InfraredBlockers::add(std::uint32_t index, Vec2 offset_mm, NearbyBlockers& found) const {
     Blocker const& blocker = blockers_[index];
-    Pose const& pose = poses_[index];
+    BlockerPose const& pose = poses_[index];
     if (blocker.next_body != kNone) {
         found.add_edge(offset_mm - pose.axis, offset_mm + pose.axis);
         return;

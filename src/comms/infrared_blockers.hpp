@@ -8,6 +8,7 @@
 #include "base/grid.hpp"
 #include "comms/neighbour_cells.hpp"
 #include "geometry/wall_index.hpp"
+#include "world/blocker.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -53,28 +54,12 @@ public:
     void find_near(World const& world, Vec2 centre_mm, float radius_mm, NearbyBlockers& found) const;
 
 private:
-    /// A rigid body, or the straight piece of a membrane between two neighbouring bodies.
-    struct Blocker {
-        std::uint32_t body = 0;
-        std::uint32_t next_body = kNone;  // of a membrane
-        Polygon corners;                  // of a rigid body, in its own frame; of a disk: none
-    };
-
-    struct Pose {
-        Vec2 position_mm;
-        Vec2 axis;        // along the heading; of a piece of a membrane: from its middle to its end, mm
-        float radius_mm;  // of the bounding disk
-
-        friend bool operator==(Pose const&, Pose const&) = default;
-    };
-
-    static Pose pose_of(World const& world, Blocker const& blocker);
     void add(std::uint32_t blocker, Vec2 offset_mm, NearbyBlockers& found) const;
     void sort(World const& world);
 
     std::optional<WallIndex> walls_;
     std::vector<Blocker> blockers_;
-    std::vector<Pose> poses_;         // of the blockers
+    std::vector<BlockerPose> poses_;  // of the blockers
     std::vector<Vec2> positions_mm_;  // the same, for the grid
     float largest_radius_mm_ = 0.0F;
     UniformGrid grid_;

@@ -202,20 +202,15 @@ void check_walls(Scenario const& scenario) {
     }
 }
 
-/// The highest level that a lamp can have by itself, sensor counts.
-int brightest_level(LampSpec const& lamp) {
-    return std::visit([](auto const& spec) { return spec.brightest(); }, lamp);
-}
-
 /// Levels of lamps have 15 bits, however many those of the sensors' converter are.
 void check_light_levels(Scenario const& scenario) {
     constexpr int kMuchFewerBits = kLightBits - 3;
     ObjectConfig const* brightest = nullptr;
     int level = 0;
     for (ObjectConfig const& object : scenario.objects) {
-        if (object.spec.lamp && object.nb > 0 && (brightest == nullptr || brightest_level(*object.spec.lamp) > level)) {
+        if (object.spec.lamp && object.nb > 0 && (brightest == nullptr || object.spec.lamp->brightest() > level)) {
             brightest = &object;
-            level = brightest_level(*object.spec.lamp);
+            level = object.spec.lamp->brightest();
         }
     }
     for (ObjectConfig const& object : scenario.objects) {

@@ -6,6 +6,7 @@
 
 #include "config/key.hpp"
 #include "config/map_reader.hpp"
+#include "config/scenario.hpp"
 #include "world/specs.hpp"
 
 namespace pogosim {
@@ -20,13 +21,9 @@ inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 /// `x` and `y` of a lighthouse.
 std::span<Key<Vec2> const> lighthouse_centre_keys();
 
-/// The light of a spot, its photo start, and its `x` and `y`. Its shape has been read before.
-void read_spot(MapReader& reader, SpotSpec& spot);
-
-/// False for light that is the same wherever the lamp stands, or that one coordinate alone may place: a plane.
-inline bool has_place(SpotSpec const& spot) {
-    return !is_everywhere(spot.shape) || spot.mode == LightMode::gradient;
-}
+/// Makes the object this lamp, whose own keys have been read, and reads those that all lamps have. Light without a
+/// place, such as the same level everywhere, casts no shadows.
+void make_lamp_object(MapReader& reader, ObjectConfig& object, LampSpec lamp, bool has_place);
 
 /// Warns when only one of two coordinates is given: the other one has its default. (For bodies it is an error; lamps
 /// have always taken 0.)

@@ -48,6 +48,27 @@ std::span<Key<BodySpec> const> blocking_keys() {
     return keys;
 }
 
+constexpr std::string_view kBlocksLight = "The object throws shadows in the light of lamps with `casts_shadows`.";
+
+std::span<Key<BodySpec> const> shadow_keys() {
+    using K = Key<BodySpec>;
+    static std::array const keys{
+        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}.only_if(
+            [](BodySpec const& body) { return !body.blocks_light; }),
+    };
+    return keys;
+}
+
+/// Those of bodies that throw none by default.
+std::span<Key<BodySpec> const> shadow_of_robot_keys() {
+    using K = Key<BodySpec>;
+    static std::array const keys{
+        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}.only_if(
+            [](BodySpec const& body) { return body.blocks_light; }),
+    };
+    return keys;
+}
+
 std::span<Key<IrSpec> const> ir_keys() {
     using K = Key<IrSpec>;
     static std::array const keys{
@@ -230,6 +251,9 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     BodySpec& body = object.spec.body.emplace();
     reader.read(body_keys(), body);
     body.density = std::max(body.density, kLeastDensity);
+    bool const is_on_wheels = object.spec.robot && object.spec.robot->model.has_motors();
+    body.blocks_light = !is_on_wheels;
+    reader.read(is_on_wheels ? shadow_of_robot_keys() : shadow_keys(), body);
 }
 
 void read_blocking(MapReader& reader, ObjectConfig& object) {

@@ -1,5 +1,5 @@
 // The types an entry of `objects` can have. Each is a function that fills an object from its keys, and a line in the
-// table of solid_types.cpp or lamp_types.cpp; docs/new_object_type.md adds one.
+// table of solid_types.cpp or lamps/lamp_types.cpp; docs/new_object_type.md adds one.
 #pragma once
 
 #include <span>
@@ -18,8 +18,9 @@ struct ObjectType {
 };
 
 std::span<ObjectType const> solid_types();
+/// Defined in lamps/lamp_types.cpp: lamps read their keys beside their light, in a room that this one does not know.
 std::span<ObjectType const> lamp_types();
-/// The types of both files.
+/// All types.
 std::span<ObjectType const> object_types();
 
 /// One entry of `objects`, read and checked, into a new `object`. Returns the values of the keys that mean something.

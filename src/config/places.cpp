@@ -35,7 +35,7 @@ std::string size_key(ObjectSpec const& spec) {
     if (!spec.lamp) {
         return size_key(spec.shape, /*longer=*/true);
     }
-    return size_key(std::visit([](auto const& lamp) { return lamp.shape; }, *spec.lamp), /*longer=*/false);
+    return size_key(spec.lamp->shape(), /*longer=*/false);
 }
 
 std::string coordinate_key(Scenario const& scenario, ObjectConfig const& object, std::string const& axis) {

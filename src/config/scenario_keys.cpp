@@ -115,6 +115,9 @@ std::span<Key<WallSpec> const> wall_keys() {
         K{"walls_block_infrared", &WallSpec::block_infrared, any(), "",
           "No message passes the walls: the outline of the arena and its holes."}
             .only_if([](WallSpec const& walls) { return walls.block_infrared; }),
+        K{"walls_block_light", &WallSpec::block_light, any(), "",
+          "The walls throw shadows in the light of lamps with `casts_shadows`."}
+            .only_if([](WallSpec const& walls) { return !walls.block_light; }),
     };
     return keys;
 }

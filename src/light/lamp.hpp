@@ -1,5 +1,5 @@
-// Lamps at work. Each kind is one file with its make_lamp(), which turns the parameters of a lamp into something that
-// writes light levels into the map.
+// Lamps at work. Each kind has a make_lamp(), which turns its parameters into something that writes light levels into
+// the map. It gets a map for its cells, whose levels do not matter; all maps to paint on have the same cells.
 //
 //     spots that stand still    summed once, and again when a photo start changes one of them
 //     spots on an orbit         added to that sum
@@ -41,13 +41,11 @@ public:
     /// Puts its light on the map, and appends the cells it has written to `painted` (unless it is a still one).
     virtual void paint(LampState const& state, LightMap& map, std::vector<std::uint32_t>& painted) const = 0;
 
+    /// Where its light comes from, for shadows. Not asked of light without a place.
+    virtual Vec2 source_mm(LampState const& state) const = 0;
+
     /// Appends where it stands; nothing when it has no place because its light is the same everywhere.
     virtual void mark(LampState const& state, std::vector<LampMark>& marks) const = 0;
 };
-
-/// `map` gives the cells; its levels do not matter. All maps to paint on have the same cells.
-std::unique_ptr<Lamp> make_lamp(SpotSpec const& spec, Arena const& arena, LightMap const& map);
-std::unique_ptr<Lamp> make_lamp(RotatingRaySpec const& spec, Arena const& arena, LightMap const& map);
-std::unique_ptr<Lamp> make_lamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map);
 
 }  // namespace pogosim

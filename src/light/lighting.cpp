@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <variant>
+#include <utility>
 
 #include "base/memory.hpp"
 
@@ -19,16 +19,8 @@ std::string cells_text(LightMap const& map) {
     return fmt::format("{} x {} cells", map.columns, map.rows);
 }
 
-std::unique_ptr<Lamp> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
-    return std::visit(
-        [&](auto changed) {
-            changed.centre_mm = changed.centre_mm + setting.moved_mm;
-            if (setting.intensity != 1.0F) {
-                changed.scale_levels(setting.intensity);
-            }
-            return make_lamp(changed, world.arena, world.light);
-        },
-        spec);
+std::shared_ptr<Lamp const> make_lamp(LampSpec const& spec, LampSetting const& setting, World const& world) {
+    return spec.make(setting.moved_mm, setting.intensity, world.arena, world.light);
 }
 
 }  // namespace
@@ -57,6 +49,7 @@ Lighting::Lighting(std::vector<LampSpec> const& lamps, World const& world) {
                                lamps.size(), cells_text(world.light));
         };
         allocate_for(purpose, std::nullopt, add);
+        casts_shadows_ = casts_shadows_ || spec.casts_shadows;
     }
     std::ranges::stable_sort(lamps_, {}, [](Entry const& entry) { return entry.lamp->layer(); });
 }
@@ -74,15 +67,41 @@ bool Lighting::take_over(Entry& entry, World const& world) {
     return true;
 }
 
+/// Returns whether other cells are hidden from the lamp than before.
+bool Lighting::cast_shadows(Entry& entry, World const& world, bool has_blocker_moved) {
+    Vec2 const source_mm = entry.lamp->source_mm(entry.shown);
+    if (!has_blocker_moved && !is_first_update_ && source_mm == entry.hidden_from_mm) {
+        return false;
+    }
+    entry.hidden_from_mm = source_mm;
+    blockers_.find_hidden(world, source_mm, newly_hidden_);
+    std::swap(entry.hidden, newly_hidden_);
+    return entry.hidden != newly_hidden_;
+}
+
+/// Puts a lamp on the map; the cells that are hidden from it keep their levels.
+void Lighting::paint(Entry const& entry, LightMap& map) {
+    kept_levels_.clear();
+    for (std::uint32_t const cell : entry.hidden) {
+        kept_levels_.push_back(map.level[cell]);
+    }
+    entry.lamp->paint(entry.shown, map, painted_);
+    for (std::size_t i = 0; i < entry.hidden.size(); ++i) {
+        map.level[entry.hidden[i]] = kept_levels_[i];
+    }
+}
+
 void Lighting::update(World& world) {
     // What has changed?
     bool any_changed = is_first_update_;
     bool base_changed = is_first_update_;
+    bool const has_blocker_moved = casts_shadows_ && blockers_.update(world);
     for (Entry& entry : lamps_) {
         bool const is_set = take_over(entry, world);
         LampState const state = entry.lamp->state_at(world.time_s());
-        if (state != entry.shown || is_set) {
-            entry.shown = state;
+        bool const is_new = state != entry.shown || is_set;
+        entry.shown = state;
+        if ((entry.spec.casts_shadows && cast_shadows(entry, world, has_blocker_moved)) || is_new) {
             any_changed = true;
             base_changed = base_changed || entry.lamp->layer() == Layer::still;
         }
@@ -106,7 +125,7 @@ void Lighting::update(World& world) {
     painted_.clear();
     for (Entry const& entry : lamps_) {
         if (entry.lamp->layer() != Layer::still && entry.setting.is_on) {
-            entry.lamp->paint(entry.shown, map, painted_);
+            paint(entry, map);
         }
     }
 }
@@ -127,7 +146,7 @@ void Lighting::sum_still_lamps(LightMap& map) {
     std::ranges::fill(map.level, std::int16_t{0});
     for (Entry const& entry : lamps_) {
         if (entry.lamp->layer() == Layer::still && entry.setting.is_on) {
-            entry.lamp->paint(entry.shown, map, painted_);
+            paint(entry, map);
         }
     }
     auto const purpose = [&] {

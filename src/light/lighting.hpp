@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/lamp.hpp"
+#include "light/light_blockers.hpp"
 #include "world/specs.hpp"
 #include "world/world.hpp"
 
@@ -36,15 +37,23 @@ private:
         std::shared_ptr<Lamp const> lamp;
         LampState shown{};
         LampSetting setting{};
+        std::vector<std::uint32_t> hidden{};  // cells in shadow
+        Vec2 hidden_from_mm{};
     };
 
     static bool take_over(Entry& entry, World const& world);
+    bool cast_shadows(Entry& entry, World const& world, bool has_blocker_moved);
+    void paint(Entry const& entry, LightMap& map);
     void sum_still_lamps(LightMap& map);
 
     std::vector<Entry> lamps_;            // in the order in which they are put on the map
     std::vector<std::int16_t> base_;      // levels of the lamps that stand still alone
     std::vector<std::uint32_t> painted_;  // cells where the map may differ from that
     bool is_first_update_ = true;
+    bool casts_shadows_ = false;  // any of them
+    LightBlockers blockers_;
+    std::vector<std::uint32_t> newly_hidden_;  // space for cast_shadows()
+    std::vector<std::int16_t> kept_levels_;    // space for paint()
 };
 
 }  // namespace pogosim

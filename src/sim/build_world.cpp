@@ -303,6 +303,7 @@ World built_world(Scenario const& scenario, std::uint32_t seed) {
     world.time_step_s = scenario.time_step_s;
     world.ignore_occlusions = scenario.ignore_occlusions;
     world.walls_block_infrared = scenario.walls.block_infrared;
+    world.walls_block_light = scenario.walls.block_light;
     world.original_wall_copies = scenario.wall_copies == WallCopies::original;
     world.temperature_c = static_cast<float>(scenario.arena_temperature_c);
     world.magnetometer = magnetometers_of(scenario, seed);

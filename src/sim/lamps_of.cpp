@@ -5,10 +5,10 @@
 #include <iterator>
 #include <numbers>
 #include <string>
-#include <variant>
 
 #include "base/log.hpp"
 #include "config/places.hpp"
+#include "lamps/spot_lamp.hpp"
 #include "light/lit_area.hpp"
 
 namespace pogosim {
@@ -53,7 +53,7 @@ bool lights_a_cell(LampArea const& area, LightMap const& map) {
 std::vector<LampArea> areas_of(LampSpec const& lamp, World const& world) {
     Arena const& arena = world.arena;
     LampArea const start = area_at_start(lamp);
-    auto const* const spot = std::get_if<SpotSpec>(&lamp);
+    auto const* const spot = lamp.get_if<SpotSpec>();
     if (spot == nullptr || spot->orbit.radius_mm == 0.0F || spot->orbit.angular_speed_rad_s == 0.0) {
         return {start};
     }
@@ -78,7 +78,7 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
     LightMap const& map = world.light;
     Shape const shape = area_at_start(lamp).shape;
     bool const reaches_a_centre = inner_radius(shape) >= 0.5F * length(map.cell_mm);
-    if (reaches_a_centre && std::holds_alternative<SpotSpec>(lamp)) {
+    if (reaches_a_centre && lamp.get_if<SpotSpec>() != nullptr) {
         return;
     }
     std::vector<LampArea> const areas = areas_of(lamp, world);
@@ -96,7 +96,7 @@ void warn_of_dark_lamp(Scenario const& scenario, ObjectConfig const& object, Wor
 /// Lamps may overlap.
 void warn_of_copies(Scenario const& scenario, ObjectConfig const& object) {
     if (object.nb > 1) {
-        bool const adds_up = std::visit([](auto const& spec) { return spec.kAddsUp; }, *object.spec.lamp);
+        bool const adds_up = object.spec.lamp->adds_up();
         log().warn("{}: {} lamps at the same place{}", place_of(scenario, object, ObjectSetting::count), object.nb,
                    adds_up ? "; their levels add up" : ", which look like one");
     }
@@ -131,7 +131,7 @@ void warn_of_jump(Scenario const& scenario, ObjectConfig const& object, SpotSpec
 void look_for_slips(Scenario const& scenario, ObjectConfig const& object, World const& world) {
     LampSpec const& lamp = *object.spec.lamp;
     warn_of_copies(scenario, object);
-    auto const* const spot = std::get_if<SpotSpec>(&lamp);
+    auto const* const spot = lamp.get_if<SpotSpec>();
     if (spot != nullptr && object.nb > 0) {
         warn_of_jump(scenario, object, *spot, world);
     }
@@ -160,11 +160,10 @@ std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& aren
     std::vector<PlacedLamp> lamps;
     for (ObjectConfig const& object : scenario.objects) {
         if (object.spec.lamp) {
-            auto const place = [&](auto const& spec) {
-                return spec.kAddsUp ? spec.centre_mm : lit_box(spec.shape, spec.centre_mm, arena).centre();
-            };
-            PlacedLamp const lamp{
-                .category = object.category, .start_mm = std::visit(place, *object.spec.lamp), .setting = {}};
+            LampSpec const& spec = *object.spec.lamp;
+            Vec2 const start_mm =
+                spec.adds_up() ? spec.centre_mm() : lit_box(spec.shape(), spec.centre_mm(), arena).centre();
+            PlacedLamp const lamp{.category = object.category, .start_mm = start_mm, .setting = {}};
             lamps.insert(lamps.end(), static_cast<std::size_t>(object.nb), lamp);
         }
     }
@@ -172,7 +171,7 @@ std::vector<PlacedLamp> placed_lamps(Scenario const& scenario, Arena const& aren
 }
 
 LampArea area_at_start(LampSpec const& lamp) {
-    return std::visit([](auto const& spec) { return LampArea{spec.shape, spec.start_mm()}; }, lamp);
+    return {lamp.shape(), lamp.start_mm()};
 }
 
 }  // namespace pogosim

@@ -11,7 +11,7 @@
 
 #include "geometry/shape.hpp"
 #include "world/brain_spec.hpp"
-#include "world/lamp_specs.hpp"
+#include "world/lamp_spec.hpp"
 #include "world/robot_model.hpp"
 
 namespace pogosim {
@@ -28,6 +28,7 @@ struct BodySpec {
     float restitution = 0.5F;      // 0 to 1; two bodies: the larger
     bool fixed = false;            // never moves
     bool blocks_infrared = false;  // messages do not pass
+    bool blocks_light = true;      // throws shadows in the light of lamps that cast them
 
     friend bool operator==(BodySpec const&, BodySpec const&) = default;
 };
@@ -40,6 +41,7 @@ struct WallSpec {
     float friction = 0.05F;       // Coulomb coefficient
     float restitution = 0.5F;     // 0 to 1; above 1, walls add energy
     bool block_infrared = false;  // messages do not pass
+    bool block_light = true;      // they throw shadows in the light of lamps that cast them
 };
 
 enum class ReceptionLaw {

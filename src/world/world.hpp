@@ -210,6 +210,7 @@ struct World {
     bool periodic = false;              // wrap at the bounding box of the outer wall; no walls
     bool ignore_occlusions = false;     // IR: range only, no half-plane test of emitters, no shadows
     bool walls_block_infrared = false;  // of a solid arena
+    bool walls_block_light = true;      // the same; matters to lamps that cast shadows
     bool original_wall_copies =
         false;  // a wall's message arrives as often as in the original simulator, see Visibility
     float temperature_c = 42.0F;

@@ -13,6 +13,9 @@
 #include "config/source.hpp"
 #include "config/yaml_text.hpp"
 #include "config_file.hpp"
+#include "lamps/alternating_rays_lamp.hpp"
+#include "lamps/rotating_ray_lamp.hpp"
+#include "lamps/spot_lamp.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -24,7 +27,7 @@ RobotSpec robot(std::string const& keys) {
 }
 
 SpotSpec spot_of(ObjectConfig const& object) {
-    return std::get<SpotSpec>(*object.spec.lamp);
+    return *object.spec.lamp->get_if<SpotSpec>();
 }
 
 SpotSpec lamp(std::string const& keys) {
@@ -444,7 +447,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    auto const spec = [&](std::size_t i) { return std::get<RotatingRaySpec>(*s.objects.at(i).spec.lamp); };
+    auto const spec = [&](std::size_t i) { return *s.objects.at(i).spec.lamp->get_if<RotatingRaySpec>(); };
     EXPECT_EQ(spec(2).shape.kind, ShapeKind::triangle);
     EXPECT_EQ(spec(2).shape.side_length_mm, 8.0F);
     EXPECT_EQ(spec(2).centre_mm, (Vec2{11, 12}));
@@ -487,7 +490,7 @@ objects:
 )",
                             {.overrides = {}, .strict = true});
     EXPECT_EQ(warnings.text(), "");
-    auto const spec = [&](std::size_t i) { return std::get<AlternatingRaysSpec>(*s.objects.at(i).spec.lamp); };
+    auto const spec = [&](std::size_t i) { return *s.objects.at(i).spec.lamp->get_if<AlternatingRaysSpec>(); };
     EXPECT_EQ(spec(2).shape.kind, ShapeKind::rectangle);
     EXPECT_EQ(spec(2).shape.width_mm, 6.0F);
     EXPECT_EQ(spec(2).shape.height_mm, 7.0F);
@@ -901,6 +904,39 @@ TEST(Scenario, PassiveObjectsMembranesAndWallsMayBlockInfrared) {
     // Robots hide each other anyway.
     EXPECT_NE(load_error(kRobots + "    blocks_infrared: true\n", {.strict = true}).find("x.yaml:6: "),
               std::string::npos);
+}
+
+TEST(Scenario, LampsWithAPlaceMayCastShadows) {
+    std::string const lamps[] = {
+        "static_light\n    geometry: disk", "static_light\n    geometry: global\n    light_mode: gradient",
+        "orbiting_static_light\n    geometry: rectangle\n    orbit_radius: 10",
+        "rotating_ray_of_light\n    geometry: global", "alternating_rays_of_light\n    geometry: arena"};
+    for (std::string const& type : lamps) {
+        Warnings const warnings;
+        std::string const it = kRobots + "  it:\n    type: " + type + "\n    x: 1\n    y: 2\n";
+        EXPECT_TRUE(load(it + "    casts_shadows: true\n").objects.at(1).spec.lamp->casts_shadows) << type;
+        EXPECT_FALSE(load(it).objects.at(1).spec.lamp->casts_shadows) << type;
+        EXPECT_EQ(warnings.text(), "");
+    }
+    std::string const without = kRobots + "  it:\n    type: static_light\n    casts_shadows: true\n    geometry: ";
+    for (std::string const geometry : {"global", "arena", "disk\n    light_mode: plane"}) {
+        EXPECT_EQ(
+            load_error(without + geometry + "\n"),
+            "x.yaml:8: objects.it.casts_shadows: this light comes from no place, so nothing can be in its way; use "
+            "a lamp with a place, such as light_mode gradient, or geometry disk");
+    }
+}
+
+TEST(Scenario, WallsAndAllBodiesButRobotsOnWheelsBlockLight) {
+    EXPECT_TRUE(load(kRobots).walls.block_light);
+    EXPECT_FALSE(load("walls_block_light: false\n" + kRobots).walls.block_light);
+    EXPECT_FALSE(load(kRobots).objects.at(0).spec.body->blocks_light);
+    EXPECT_TRUE(load(kRobots + "    blocks_light: true\n").objects.at(0).spec.body->blocks_light);
+    for (std::string const type : {"passive_object", "active_object", "pogobject", "membrane", "rectmembrane"}) {
+        std::string const thing = kRobots + "  it:\n    type: " + type + "\n    geometry: disk\n";
+        EXPECT_TRUE(load(thing).objects.at(1).spec.body->blocks_light) << type;
+        EXPECT_FALSE(load(thing + "    blocks_light: false\n").objects.at(1).spec.body->blocks_light) << type;
+    }
 }
 
 TEST(Scenario, WallsThatAddEnergyGetAWarning) {

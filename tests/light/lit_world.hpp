@@ -7,6 +7,9 @@
 #include <numbers>
 #include <vector>
 
+#include "lamps/alternating_rays_lamp.hpp"
+#include "lamps/rotating_ray_lamp.hpp"
+#include "lamps/spot_lamp.hpp"
 #include "light/lighting.hpp"
 #include "support/small_world.hpp"
 

@@ -387,15 +387,31 @@ def test_links_lead_somewhere(page: Path) -> None:
     assert [section for target, section in sections if section not in anchors(target)] == []
 
 
+def compiler_says(source: Path, *folders: Path) -> str:
+    """What the compiler finds wrong in a source that becomes a part of the simulator."""
+    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
+    for folder in (*folders, ROOT / "src", ROOT / "include"):
+        command += ["-I", str(folder)]
+    return subprocess.run([*command, str(source)], capture_output=True, text=True, check=False).stderr
+
+
 def test_new_object_type_of_the_docs_compiles(tmp_path: Path) -> None:
-    function, line = blocks(ROOT / "docs" / "new_object_type.md", "cpp")
+    function, line, *_ = blocks(ROOT / "docs" / "new_object_type.md", "cpp")
     before, table, after = (
         (ROOT / "src" / "config" / "solid_types.cpp").read_text().partition("constexpr std::array kSolidTypes{\n")
     )
     (source := tmp_path / "solid_types.cpp").write_text(f"{before}{function}\n{table}{line}{after}")
-    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
-    command += ["-I", str(ROOT / "src"), "-I", str(ROOT / "include"), str(source)]
-    assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
+    assert compiler_says(source) == ""
+
+
+def test_kind_of_lamp_of_the_docs_is_a_file_and_a_line(tmp_path: Path) -> None:
+    *_, header, line = blocks(ROOT / "docs" / "new_object_type.md", "cpp")
+    (tmp_path / "strobe_lamp.hpp").write_text(header)
+    before, table, after = (
+        (ROOT / "src" / "lamps" / "lamp_types.cpp").read_text().partition("constexpr std::array kLampTypes{\n")
+    )
+    (source := tmp_path / "lamp_types.cpp").write_text(f'#include "strobe_lamp.hpp"\n{before}{table}{line}{after}')
+    assert compiler_says(source, tmp_path) == ""
 
 
 def test_api_reference_has_all_functions_and_variables_of_the_library(tmp_path: Path) -> None:

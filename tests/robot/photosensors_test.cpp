@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lamps/spot_lamp.hpp"
 #include "support/lone_robot.hpp"
 
 namespace pogosim {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "lamps/spot_lamp.hpp"
 #include "support/objects.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "config/config_file.hpp"
+#include "lamps/rotating_ray_lamp.hpp"
+#include "lamps/spot_lamp.hpp"
 #include "light/lighting.hpp"
 #include "support/small_world.hpp"
 
@@ -160,8 +162,8 @@ TEST(LampsOf, ThereAreAsManyAsTheFileSays) {
         "  c: {type: static_light, geometry: global, nb: 0}\n");
     std::vector<LampSpec> const lamps = lamps_of(scenario, world_of_cells());
     ASSERT_EQ(lamps.size(), 3U);
-    EXPECT_EQ(std::get<SpotSpec>(lamps[1]).value, 7);
-    EXPECT_TRUE(std::holds_alternative<RotatingRaySpec>(lamps[2]));
+    EXPECT_EQ(lamps[1].get_if<SpotSpec>()->value, 7);
+    EXPECT_TRUE(lamps[2].get_if<RotatingRaySpec>() != nullptr);
 }
 
 }  // namespace

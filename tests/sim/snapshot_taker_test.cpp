@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lamps/spot_lamp.hpp"
 #include "support/objects.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "record/scratch.hpp"
+#include "lamps/spot_lamp.hpp"
 #include "support/objects.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"

@@ -3,6 +3,8 @@
 //     |long white|-- ray 1, bottom left --|short white|-- ray 2, bottom right --|long white| ...
 //
 // Each ray turns through a right angle, whose middle is the direction from its corner to the centre of the box.
+#pragma once
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,17 +14,31 @@
 #include <vector>
 
 #include "base/exact_math.hpp"
+#include "config/lamp_keys.hpp"
+#include "config/object_parts.hpp"
+#include "config/object_types.hpp"
+#include "config/shape_keys.hpp"
+#include "lamps/ray_spec.hpp"
 #include "light/bearing_order.hpp"
 #include "light/lamp.hpp"
 #include "light/lit_area.hpp"
 
 namespace pogosim {
 
-namespace {
+/// Two lighthouses in turn, each through a right angle, a flash before each: `alternating_rays_of_light`. They stand at
+/// the corners (xmin, ymax) and (xmax, ymax) of the shape's bounding box.
+struct AlternatingRaysSpec : RaySpec {
+    double long_white_frame_duration_s = 1.0;    // before the first beam
+    double short_white_frame_duration_s = 0.03;  // before the second beam
+
+    friend bool operator==(AlternatingRaysSpec const&, AlternatingRaysSpec const&) = default;
+};
+
+namespace alternating_rays {
 
 enum Phase { long_white, ray_1, short_white, ray_2, phase_count };
 
-constexpr double kSweepRad = std::numbers::pi / 2.0;
+inline constexpr double kSweepRad = std::numbers::pi / 2.0;
 
 struct Lighthouse {
     Vec2 corner_mm;              // where it stands
@@ -49,7 +65,7 @@ struct Lighthouse {
     }
 };
 
-Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<LitCell> const& cells) {
+inline Lighthouse lighthouse_at(Vec2 corner_mm, Vec2 centre_mm, std::vector<LitCell> const& cells) {
     Vec2 const to_centre = centre_mm - corner_mm;
     return {.corner_mm = corner_mm,
             .cells = BearingOrder(cells, corner_mm),
@@ -87,6 +103,11 @@ public:
         }
     }
 
+    /// A flash comes from the lighthouse whose beam follows.
+    Vec2 source_mm(LampState const& state) const override {
+        return state.phase == long_white || state.phase == ray_1 ? first_.corner_mm : second_.corner_mm;
+    }
+
     void mark(LampState const& state, std::vector<LampMark>& marks) const override {
         marks.push_back(first_.mark(spec_, state, state.phase == ray_1));
         marks.push_back(second_.mark(spec_, state, state.phase == ray_2));
@@ -109,10 +130,39 @@ private:
     Lighthouse second_;
 };
 
-}  // namespace
+inline std::span<Key<AlternatingRaysSpec> const> alternating_rays_keys() {
+    using S = AlternatingRaysSpec;
+    using K = Key<S>;
+    static std::array const keys{
+        K{"value", &S::value, kLightLevel, "sensor counts", "Level in the beams, replacing that of other lamps."},
+        K{"ray_half_width", &S::half_width_rad, kHalfWidth, "rad",
+          "Half-width of a beam, to either side of its direction."},
+        K{"angular_speed", &S::angular_speed_rad_s, kAngularSpeed, "rad/s",
+          "Angular speed of both beams; positive: clockwise on the screen. 0: the first beam never moves."},
+        K{"long_white_frame_duration", &S::long_white_frame_duration_s, kSeconds, "s",
+          "Duration of the flash over the whole shape before the first beam."},
+        K{"short_white_frame_duration", &S::short_white_frame_duration_s, kSeconds, "s",
+          "Duration of the flash before the second beam."},
+        K{"white_frame_value", &S::white_frame_value, kLightLevel, "sensor counts", "Level of both flashes."},
+    };
+    return keys;
+}
 
-std::unique_ptr<Lamp> make_lamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map) {
-    return std::make_unique<AlternatingRaysLamp>(spec, arena, map);
+inline void read_alternating_rays_of_light(MapReader& reader, ObjectConfig& object) {
+    AlternatingRaysSpec spec;
+    read_shape(reader, any_geometry_keys(), spec.shape);
+    reader.read(lighthouse_centre_keys(), spec.centre_mm);
+    if (!is_everywhere(spec.shape)) {
+        warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
+    }
+    reader.read(alternating_rays_keys(), spec);
+    make_lamp_object(reader, object, spec, /*has_place=*/true);
+}
+
+}  // namespace alternating_rays
+
+inline std::shared_ptr<Lamp const> make_lamp(AlternatingRaysSpec const& spec, Arena const& arena, LightMap const& map) {
+    return std::make_shared<alternating_rays::AlternatingRaysLamp>(spec, arena, map);
 }
 
 }  // namespace pogosim
