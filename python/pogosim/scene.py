@@ -189,6 +189,15 @@ def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
     }
 
 
+def lists_of_shapes(configuration: dict[str, Any]) -> list[str]:
+    """Categories that are lists of entries with several shapes, of which a picture takes the last."""
+    shapes: dict[str, set[Shape]] = {}
+    for name, settings in entries(configuration):
+        if type_of(settings) not in SPOTS + RAYS:
+            shapes.setdefault(name, set()).add(shape_of(settings))
+    return [name for name, own in shapes.items() if len(own) > 1]
+
+
 def read_lamps(configuration: dict[str, Any]) -> list[Lamp]:
     """All spots of light; `nb` of an entry shine at the same place."""
     lamps = []

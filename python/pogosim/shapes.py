@@ -93,7 +93,7 @@ def shape_of(settings: dict[str, Any]) -> Shape:
 
     The origin of a polygon or compound is its centre of mass; where parts of a compound overlap, both weigh.
     """
-    is_pogobot = str(settings.get("type", "pogobot")).lower() == "pogobot" and "parts" not in settings
+    is_pogobot = str(settings.get("type", "pogobot")).lower() == "pogobot"
     plain = Shape(radius_mm=POGOBOT_RADIUS_MM) if is_pogobot else Shape()
     kind = str(settings.get("geometry", plain.kind)).lower()
     shape = Shape(

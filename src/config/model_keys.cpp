@@ -291,18 +291,6 @@ void refuse_parts_of_outline(MapReader const& reader, RobotModel const& model) {
     }
 }
 
-/// Notes angles that are probably in radians: nearly all of those have a fraction, and few angles in degrees do.
-void look_for_radians(MapReader const& reader, UnitSlips& slips) {
-    constexpr double kFullTurnRad = 6.3;
-    for (char const* const key : {"angle_deg", "emission_deg", "reception_deg"}) {
-        Node const* const node = reader.find(key);
-        std::optional<double> const angle = node == nullptr ? std::nullopt : number_of(*node);
-        if (angle && std::trunc(*angle) != *angle) {
-            slips.look_at({*node, reader.path_of(key)}, {kDegrees.usually_from(kFullTurnRad), "degrees"});
-        }
-    }
-}
-
 /// Such as faces whose angles were forgotten.
 void refuse_equal_faces(MapReader const& reader, std::vector<Face> const& faces) {
     Node const* const list = reader.find("faces");

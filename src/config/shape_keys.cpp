@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "config/read_list.hpp"
-#include "geometry/obstacle.hpp"
+#include "geometry/gap_between.hpp"
 #include "geometry/outline_survey.hpp"
 
 namespace pogosim {
@@ -80,10 +84,24 @@ std::span<K const> part_list_keys() {
     static std::array const keys{
         K{"parts", Elsewhere{kParts}, any(), "",
           "Convex parts of a compound, 1 to 16, which overlap or touch; see their table. Its centre of mass is the "
-          "object's position. Where parts overlap, both weigh."}
+          "object's position. Overlapping areas count twice towards the mass."}
             .only_if([](Shape const& shape) { return shape.kind == ShapeKind::compound; }),
     };
     return keys;
+}
+
+/// A corner in the middle of a side leaves no room to be rounded.
+void drop_corners_in_sides(Polygon& corners) {
+    constexpr float kStraightMm = 1e-3F;
+    for (std::size_t i = 0; i < corners.size() && corners.size() > 3;) {
+        Vec2 const before = corners[(i + corners.size() - 1) % corners.size()];
+        Vec2 const after = corners[(i + 1) % corners.size()];
+        if (length(nearest_on_segment(before, after, corners[i]) - corners[i]) < kStraightMm) {
+            corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+        } else {
+            ++i;
+        }
+    }
 }
 
 Polygon read_corners(Place const& place) {
@@ -113,24 +131,31 @@ Polygon read_corners(Place const& place) {
     if (signed_area(corners) < 0.0) {
         std::ranges::reverse(corners);
     }
+    drop_corners_in_sides(corners);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         Vec2 const before = corners[i] - corners[(i + corners.size() - 1) % corners.size()];
         Vec2 const after = corners[(i + 1) % corners.size()] - corners[i];
         if (cross(before, after) < 0.0F) {
-            fail_at(place, fmt::format("the polygon is not convex at ({:g}, {:g}); put such a body together of convex "
-                                       "parts, with geometry: compound",
-                                       corners[i].x, corners[i].y));
+            fail_at(place,
+                    fmt::format("the polygon is not convex at ({:g}, {:g}); build such a body from convex parts, "
+                                "with geometry: compound",
+                                corners[i].x, corners[i].y));
         }
     }
     return corners;
 }
 
-/// A list that the shape has no use for only has to be one.
+/// What stands under a key of another shape is not read, but it has to be a list.
 void require_list(MapReader const& reader, std::string_view key, std::string_view expected) {
     Node const* const list = reader.find(key);
     if (list != nullptr && list->kind != Node::Kind::sequence) {
         fail_expected({*list, reader.path_of(key)}, expected);
     }
+}
+
+/// To hundredths, for a message.
+float rounded_down(float length_mm) {
+    return std::floor(100.0F * length_mm) / 100.0F;
 }
 
 /// The sizes of a shape that is no compound.
@@ -146,9 +171,11 @@ void read_convex(MapReader& reader, std::span<K const> geometry_keys, Shape& sha
         shape.corners_mm = read_corners({*corners, reader.path_of("corners")});
     }
     if (has_corners(shape) && shape.corner_radius_mm > largest_corner_radius(shape)) {
-        fail_at({*reader.find("corner_radius"), reader.path_of("corner_radius")},
-                fmt::format("expected at most {:.4g} (mm), which leaves some of every side, found {:g}",
-                            largest_corner_radius(shape), shape.corner_radius_mm));
+        fail_at(
+            {*reader.find("corner_radius"), reader.path_of("corner_radius")},
+            fmt::format("expected at most {:g} (mm), which leaves some of every side, found {:g}; for half circles, "
+                        "use geometry: capsule",
+                        rounded_down(largest_corner_radius(shape)), shape.corner_radius_mm));
     }
 }
 
@@ -185,26 +212,24 @@ RoundedPolygon read_part(MapReader& reader) {
     return moved(convex_parts(centred(shape)).front(), offset_mm, turn_rad);
 }
 
-/// Which parts hang together with the first one, by gaps of at most kTouchingMm.
-std::vector<bool> joined_to_first(std::vector<RoundedPolygon> const& parts) {
-    std::vector<bool> joined(parts.size(), false);
+/// For each part, how far it is from those that hang together with the first one, by gaps of at most kTouchingMm.
+std::vector<float> gaps_to_the_first(std::vector<RoundedPolygon> const& parts) {
+    std::vector<float> gaps(parts.size(), std::numeric_limits<float>::max());
     std::vector<std::size_t> next{0};
-    joined[0] = true;
-    auto const wider = [&](std::size_t i) {
-        return Obstacle{
-            .name = {}, .line = parts[i].corners_mm, .half_thickness_mm = parts[i].radius_mm + 0.5F * kTouchingMm};
-    };
+    gaps[0] = 0.0F;
     while (!next.empty()) {
         std::size_t const from = next.back();
         next.pop_back();
         for (std::size_t to = 0; to < parts.size(); ++to) {
-            if (!joined[to] && overlap_mm(wider(from), wider(to)) > 0.0F) {
-                joined[to] = true;
-                next.push_back(to);
+            if (gaps[to] > kTouchingMm) {
+                gaps[to] = std::min(gaps[to], gap_between(parts[from], parts[to]));
+                if (gaps[to] <= kTouchingMm) {
+                    next.push_back(to);
+                }
             }
         }
     }
-    return joined;
+    return gaps;
 }
 
 void read_parts(MapReader& reader, Shape& shape) {
@@ -212,17 +237,36 @@ void read_parts(MapReader& reader, Shape& shape) {
     if (list == nullptr) {
         fail_at(reader.place(), fmt::format("needs parts: {}", kParts));
     }
-    read_list(reader, "parts", kParts, 1, kMostParts, shape.parts, read_part);
-    std::vector<bool> const joined = joined_to_first(shape.parts);
-    auto const loose = std::ranges::find(joined, false);
-    if (loose != joined.end()) {
-        auto const number = static_cast<std::size_t>(loose - joined.begin());
-        fail_at({list->items[number], fmt::format("{}.{}", reader.path_of("parts"), number)},
-                "hangs together with no part before it; parts have to overlap or touch");
+    UnitSlips radians;
+    read_list(reader, "parts", kParts, 1, kMostParts, shape.parts, [&](MapReader& part) {
+        look_for_radians(part, radians);
+        return read_part(part);
+    });
+    radians.warn();
+    std::vector<float> const gaps = gaps_to_the_first(shape.parts);
+    auto const loose = std::ranges::find_if(gaps, [](float gap_mm) { return gap_mm > kTouchingMm; });
+    if (loose != gaps.end()) {
+        auto const number = static_cast<std::size_t>(loose - gaps.begin());
+        fail_at(
+            {list->items[number], fmt::format("{}.{}", reader.path_of("parts"), number)},
+            fmt::format("is not connected to part 0, nor to a part that is: the nearest of these is {:.3g} mm away; "
+                        "parts have to overlap or touch",
+                        *loose));
     }
 }
 
 }  // namespace
+
+void look_for_radians(MapReader const& reader, UnitSlips& slips) {
+    constexpr double kFullTurnRad = 6.3;
+    for (char const* const key : {"angle_deg", "emission_deg", "reception_deg"}) {
+        Node const* const node = reader.find(key);
+        std::optional<double> const angle = node == nullptr ? std::nullopt : number_of(*node);
+        if (angle && std::trunc(*angle) != *angle) {
+            slips.look_at({*node, reader.path_of(key)}, {kDegrees.usually_from(kFullTurnRad), "degrees"});
+        }
+    }
+}
 
 std::span<K const> robot_geometry_keys() {
     static std::array const keys{solid_geometry_key(/*required=*/false)};

@@ -153,7 +153,13 @@ Hull ContinuousCollision::hull_at(World const& world, Hulls const& hulls, PartOf
 /// The same as fraction_before() if one of them is a hull.
 float ContinuousCollision::fraction_before_hull(World const& world, Hulls const& hulls, std::uint32_t i,
                                                 std::uint32_t k) const {
+    Bodies const& bodies = world.bodies;
     float fraction = fractions_[i];
+    float const between_disks_mm =
+        length(minimum_image(world, starts_mm_[i], starts_mm_[k])) - bodies.radius_mm[i] - bodies.radius_mm[k];
+    if (between_disks_mm >= length(motions_mm_[i]) + length(motions_mm_[k])) {
+        return fraction;
+    }
     for (std::uint32_t own = 0; own < hulls.part_count(i); ++own) {
         for (std::uint32_t other = 0; other < hulls.part_count(k); ++other) {
             fraction = std::min(fraction, fraction_before_part(world, hulls, {i, own}, {k, other}));
@@ -177,6 +183,18 @@ float ContinuousCollision::fraction_before_part(World const& world, Hulls const&
     float const closing_mm = length(motions_mm_[i]) + length(motions_mm_[k]) +
                              std::abs(turns_rad_[i]) * bodies.radius_mm[i] +
                              std::abs(turns_rad_[k]) * bodies.radius_mm[k];
+    auto const start_of = [&](PartOf const& part) {
+        auto const [centre_mm, radius_mm] = hulls.around(world, part.body, part.part);
+        Vec2 const place_mm = minimum_image(world, starts_mm_[i], starts_mm_[part.body]);
+        return Hulls::Around{place_mm + rotate(centre_mm, direction(bodies.start_rad[part.body])), radius_mm};
+    };
+    Hulls::Around const start = start_of(own);
+    Hulls::Around const other_start = start_of(other);
+    float const between_disks_mm =
+        length(other_start.centre_mm - start.centre_mm) - start.radius_mm - other_start.radius_mm;
+    if (between_disks_mm >= closing_mm) {
+        return fractions_[i];
+    }
     float free_mm = gap_mm(0.0F);
     float const touch_mm = std::min(-kOverlapMm, free_mm - kNearerMm);
     float fraction = 0.0F;

@@ -216,15 +216,26 @@ std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t 
     return gap_to_centre(minimum_image(world, world.bodies.position_mm[fixed], point_mm));
 }
 
-float DiskContacts::gap_of_hull_mm(World const& world, std::uint32_t contact) const {
+float DiskContacts::gap_of_hull_mm(World const& world, std::uint32_t contact, float beyond_mm) const {
     auto const [a, b, law] = near_[contact];
+    auto const [part_a, part_b] = parts(contact);
     Vec2 const place_mm = world.bodies.position_mm[a];
+    auto const around = [&](std::uint32_t body, std::uint32_t part) {
+        auto const [centre_mm, radius_mm] = hulls_.around(world, body, part);
+        return Hulls::Around{rotate(centre_mm, world.bodies.heading_dir[body]), radius_mm};
+    };
+    Hulls::Around const around_a = around(a, part_a);
     if (is_wall(contact)) {
-        return distance_to(wall_side(contact), place_mm) - law.radius_mm;
+        return distance_to(wall_side(contact), place_mm + around_a.centre_mm) - around_a.radius_mm;
     }
     // About the centre of `a`, which may be on the other side of a seam.
     Vec2 const to_b_mm = minimum_image(world, place_mm, world.bodies.position_mm[b]);
-    auto const [part_a, part_b] = parts(contact);
+    Hulls::Around const around_b = around(b, part_b);
+    float const between_disks_mm =
+        length(to_b_mm + around_b.centre_mm - around_a.centre_mm) - around_a.radius_mm - around_b.radius_mm;
+    if (between_disks_mm >= beyond_mm) {
+        return between_disks_mm;
+    }
     return gap_between_mm(placed(hulls_.of(world, a, part_a), {}, world.bodies.heading_dir[a]),
                           placed(hulls_.of(world, b, part_b), to_b_mm, world.bodies.heading_dir[b]));
 }

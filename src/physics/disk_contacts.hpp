@@ -105,7 +105,7 @@ public:
     std::vector<SpringImpulse>& spring_impulse() { return spring_impulse_; }
     std::vector<SpringImpulse> const& spring_impulse() const { return spring_impulse_; }
 
-    /// The same for their parts: a contact is between two of them.
+    /// The parts of the bodies of a contact of hulls: each contact is between two of them.
     TouchingParts const& parts(std::uint32_t contact) const { return hull_parts_[contact - first_hull_]; }
 
     Hulls const& hulls() const { return hulls_; }
@@ -116,8 +116,8 @@ public:
     /// see gap_to().
     std::optional<Gap> gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const;
 
-    /// The gap of a contact of a hull; to a wall, at most the gap.
-    float gap_of_hull_mm(World const& world, std::uint32_t contact) const;
+    /// The gap of a contact of a hull if it is below `beyond_mm`, else at least that; to a wall, at most the gap.
+    float gap_of_hull_mm(World const& world, std::uint32_t contact, float beyond_mm) const;
 
 private:
     bool is_fixed(std::uint32_t body) const { return disks_[body].inverse_mass == 0.0F; }
@@ -155,7 +155,7 @@ private:
     std::vector<HullImpulse> hull_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
     std::vector<TouchingParts> parts_with_fixed_;  // the same
-    std::vector<Pushing> pushing_;                 // the same
+    std::vector<Pushing> pushing_;                 // scratch, while near_ is rebuilt
     std::vector<std::uint8_t> pushes_;             // of each body: it has a contact in pushing_
     std::uint32_t pair_count_ = 0;
     std::uint32_t first_wall_ = 0;  // in near_

@@ -11,7 +11,7 @@ namespace {
 
 // A side of `a` stays the reference until one of `b` is further out by this, so that touches keep their features.
 constexpr float kPreferenceMm = 0.01F;
-// Manifold that lie closer together than this are one.
+// Touches that lie closer together than this are one.
 constexpr float kSamePlaceMm = 0.01F;
 
 /// The side of a hull from which another one is furthest away. Without sides: minus infinity.
@@ -189,6 +189,22 @@ bool pushes_from_corner(WallSide const& side, Vec2 normal) {
     return side.has_corner && dot(normal, side.along) <= 0.0F && dot(normal, side.along_previous) >= 0.0F;
 }
 
+/// How far an edge of a wall is out of the side of a hull that it is furthest from. The wall goes on behind an end that
+/// is no convex corner.
+float separation_mm(Hull const& hull, WallSide const& side) {
+    Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
+    float furthest_mm = -std::numeric_limits<float>::max();
+    for (std::uint32_t k = 0; k < hull.count; ++k) {
+        float const slope = dot(side.along, hull.outwards[k]);
+        bool const goes_on = slope > 0.0F ? !side.has_corner : !side.ends_in_corner;
+        if (slope == 0.0F || !goes_on) {
+            Vec2 const nearest_mm = slope > 0.0F ? side.from_mm : to_mm;
+            furthest_mm = std::max(furthest_mm, dot(nearest_mm - hull.corner_mm[k], hull.outwards[k]));
+        }
+    }
+    return furthest_mm;
+}
+
 /// The touch of a wall's corner with the inside of a hull's side or with one of its corners.
 Manifold touches_with_corner(Hull const& hull, WallSide const& side, float reach_mm) {
     Hull corner{.count = 1};
@@ -204,6 +220,7 @@ Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead) {
     result.count = hull.count;
     result.radius_mm = hull.radius_mm;
     result.centre_mm = place_mm + rotate(hull.centre_mm, ahead);
+    result.reach_mm = hull.reach_mm;
     for (std::uint32_t k = 0; k < hull.count; ++k) {
         result.corner_mm[k] = place_mm + rotate(hull.corner_mm[k], ahead);
         result.outwards[k] = rotate(hull.outwards[k], ahead);
@@ -240,28 +257,22 @@ Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
 Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm) {
     Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
     float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
-    Furthest const from_hull = [&] {
-        Hull corner{.count = 1};
-        corner.corner_mm[0] = side.from_mm;
-        return furthest_from_side(hull, corner);
-    }();
-    if (side.has_corner && from_hull.distance_mm > above_edge_mm + kPreferenceMm &&
-        pushes_from_corner(side, -hull.outwards[from_hull.side])) {
-        return touches_with_corner(hull, side, reach_mm);
-    }
-    if (dot(hull.centre_mm - side.from_mm, side.normal) < 0.0F || above_edge_mm >= reach_mm + hull.radius_mm) {
-        return {};
-    }
-    std::uint32_t const against = side_against(hull, side.normal);
-    // Free space is on the right of an edge, and on the left of a hull's side.
-    Sides const sides{.reference = {to_mm, side.from_mm},
-                      .incident = side_of(hull, against),
-                      .normal = side.normal,
-                      .reference_radius_mm = 0.0F,
-                      .incident_radius_mm = hull.radius_mm,
-                      .features = against};
-    if (std::optional<Manifold> const faces = clipped(sides, reach_mm)) {
-        return *faces;
+    // Where a side of the hull separates them better than the edge, the hull is in front of an end of the edge, or beside
+    // it: it may reach far behind the line of a short edge without touching it.
+    bool const is_beside = separation_mm(hull, side) > above_edge_mm + kPreferenceMm;
+    bool const is_behind = dot(hull.centre_mm - side.from_mm, side.normal) < 0.0F;
+    if (!is_beside && !is_behind && above_edge_mm < reach_mm + hull.radius_mm) {
+        std::uint32_t const against = side_against(hull, side.normal);
+        // Free space is on the right of an edge, and on the left of a hull's side.
+        Sides const sides{.reference = {to_mm, side.from_mm},
+                          .incident = side_of(hull, against),
+                          .normal = side.normal,
+                          .reference_radius_mm = 0.0F,
+                          .incident_radius_mm = hull.radius_mm,
+                          .features = against};
+        if (std::optional<Manifold> const faces = clipped(sides, reach_mm)) {
+            return *faces;
+        }
     }
     return side.has_corner ? touches_with_corner(hull, side, reach_mm) : Manifold{};
 }

@@ -12,14 +12,16 @@ namespace pogosim {
 
 inline constexpr std::uint32_t kMostCorners = 8;
 
-/// All points within `radius_mm` of a convex polygon. A disk has one corner. Where the polygon has no area, it has four
-/// sides all the same, some without length, which face every way.
+/// All points within `radius_mm` of a convex polygon. A disk has one corner. A capsule, whose polygon is a line, has four
+/// sides: along the line, across its end, back again, and across its start. The sides across have no length, but a
+/// direction.
 struct Hull {
     std::array<Vec2, kMostCorners> corner_mm{};  // clockwise on the screen
     std::array<Vec2, kMostCorners> outwards{};   // unit vector, of the side from this corner to the next one
     std::uint32_t count = 0;
     float radius_mm = 0.0F;
-    Vec2 centre_mm;  // a point of it, which is never behind a wall that it can touch
+    Vec2 centre_mm;         // of a part of a compound, the part's centre of mass; else the origin
+    float reach_mm = 0.0F;  // of the disk around it that holds all of the hull
 
     Vec2 next_corner_mm(std::uint32_t side) const { return corner_mm[side + 1 < count ? side + 1 : 0]; }
 };

@@ -7,7 +7,7 @@ namespace pogosim {
 
 namespace {
 
-// Manifold are sought within this distance, and what the bodies can close in a sub-step.
+// Touches are sought within this distance, and what the bodies can close in a sub-step.
 constexpr float kTouchReachMm = 1.0F;
 
 Vec2 tangent_of(Vec2 normal) {

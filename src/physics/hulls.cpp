@@ -26,10 +26,12 @@ Hulls::Hulls(World const& world) {
         std::vector<RoundedPolygon> const parts = convex_parts(shape);
         parts_[i] = {static_cast<std::uint32_t>(hulls_.size()), static_cast<std::uint32_t>(parts.size())};
         for (RoundedPolygon const& part : parts) {
-            hulls_.push_back(hull_of(part));
-            // The position correction keeps the origin of a body on the free side of walls. That of a compound may be
-            // between its parts.
-            hulls_.back().centre_mm = parts.size() > 1 ? moments_of(part).centre_mm() : Vec2{};
+            Hull hull = hull_of(part);
+            hull.centre_mm = parts.size() > 1 ? moments_of(part).centre_mm() : Vec2{};
+            for (std::uint32_t k = 0; k < hull.count; ++k) {
+                hull.reach_mm = std::max(hull.reach_mm, length(hull.corner_mm[k] - hull.centre_mm) + hull.radius_mm);
+            }
+            hulls_.push_back(hull);
         }
     }
 }
@@ -41,6 +43,7 @@ Hull Hulls::of(World const& world, std::uint32_t body, std::uint32_t part) const
     Hull disk;
     disk.count = 1;
     disk.radius_mm = world.bodies.radius_mm[body];
+    disk.reach_mm = disk.radius_mm;
     return disk;
 }
 

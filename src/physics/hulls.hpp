@@ -14,13 +14,27 @@ public:
     explicit Hulls(World const& world);
 
     bool empty() const { return hulls_.empty(); }
+    /// Whether a body is no disk.
     bool is_one(std::uint32_t body) const { return !parts_.empty() && parts_[body].count > 0; }
 
-    /// One for disks and all that is convex.
+    /// Number of convex parts; more than one for compounds only.
     std::uint32_t part_count(std::uint32_t body) const { return is_one(body) ? parts_[body].count : 1; }
 
     /// In the body's own frame. A disk is a hull with one corner.
     Hull of(World const& world, std::uint32_t body, std::uint32_t part) const;
+
+    /// The disk around a part of a body, in the body's own frame.
+    struct Around {
+        Vec2 centre_mm;
+        float radius_mm;
+    };
+    Around around(World const& world, std::uint32_t body, std::uint32_t part) const {
+        if (!is_one(body)) {
+            return {{}, world.bodies.radius_mm[body]};
+        }
+        Hull const& hull = hulls_[parts_[body].first + part];
+        return {hull.centre_mm, hull.reach_mm};
+    }
 
     /// Gap between a point and a part of a body that is a hull, whose pose is read from the world: negative inside,
     /// where the normal points out through the nearest side.

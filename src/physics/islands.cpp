@@ -88,9 +88,10 @@ void Islands::find_hulls(World const& world, DiskContacts const& contacts, Reach
     };
     for (std::uint32_t i = hulls.first; i < hulls.last; ++i) {
         auto const [a, b, law] = contacts.near()[i];
-        float const gap_mm = contacts.gap_of_hull_mm(world, i);
         float const closing_mm = dt_s * (speed_mm_s(a) + (contacts.is_pair(i) ? speed_mm_s(b) : 0.0F));
-        if (gap_mm < std::max(reach.reach_mm, closing_mm)) {
+        float const beyond_mm = std::max(reach.reach_mm, closing_mm);
+        float const gap_mm = contacts.gap_of_hull_mm(world, i, beyond_mm);
+        if (gap_mm < beyond_mm) {
             found.push_back({.contact = i, .meets = gap_mm + kContactToleranceMm < closing_mm});
         }
     }

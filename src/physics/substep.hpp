@@ -30,9 +30,10 @@ struct Demand {
     float latest_mm_s;   // < 0; faster impacts cannot wait for the next sub-step
 };
 
-/// Things that meet within the sub-step bounce at once, others may close their gap, and those that overlap are pushed
-/// apart, unless by less than the tolerance: nothing would take their speed back. What is thrown against something else in this sub-step bounces in the next one, unless it would be deep in it
-/// by then.
+/// Things that meet within the sub-step bounce at once; others may close their gap. Those that overlap by more than the
+/// tolerance are pushed apart, and lose that speed again when they have been moved. (Overlaps within the tolerance are
+/// left alone: they are not counted as such, so nothing would take the speed back.) What is thrown against something
+/// else in this sub-step bounces in the next one, unless it would be deep in it by then.
 inline Demand demand_of(float gap_mm, float speed_mm_s, float restitution, Times const& times) {
     bool const is_free = gap_mm > 0.0F;
     bool const is_elastic = restitution > 0.0F;

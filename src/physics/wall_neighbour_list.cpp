@@ -22,7 +22,11 @@ WallSides sides_of(WallIndex const& walls) {
                          .normal = {-along.y, along.x},
                          .length_mm = length(edge.to - edge.from),
                          .along_previous = along_previous,
-                         .has_corner = cross(along_previous, along) < 0.0F});
+                         .has_corner = cross(along_previous, along) < 0.0F,
+                         .ends_in_corner = false});
+    }
+    for (WallEdge const& edge : walls.edges()) {
+        sides[edge.previous].ends_in_corner = sides[edge.number].has_corner;
     }
     return sides;
 }

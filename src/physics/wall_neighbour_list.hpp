@@ -26,6 +26,7 @@ struct WallSide {
     float length_mm;
     Vec2 along_previous;  // of the edge that ends at `from_mm`
     bool has_corner;      // convex: the free angle at `from_mm` is more than half a turn
+    bool ends_in_corner;  // the same at the other end
 };
 
 /// Distance and direction from a thing to a point outside it.

@@ -74,7 +74,7 @@ TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
     EXPECT_NE(error("geometry: polygon, corners: 3").find("expected a list of 3 to 8 corners"), std::string::npos);
     EXPECT_EQ(error("geometry: polygon, corners: [[0, 0], [40, 0], [10, 10], [0, 40]]"),
               corners +
-                  "the polygon is not convex at (10, 10); put such a body together of convex parts, with "
+                  "the polygon is not convex at (10, 10); build such a body from convex parts, with "
                   "geometry: compound");
     EXPECT_EQ(error("geometry: polygon, corners: [[0, 0], [40, 0], [40, 0], [0, 40]]"),
               corners + "corners 1 and 2 are the same");
@@ -88,8 +88,11 @@ TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
     EXPECT_NE(error("geometry: polygon, corners: [[0, -50], [29, 40], [-47, -15], [47, -15], [-29, 40]]")
                   .find("cross or touch"),
               std::string::npos);
-    EXPECT_EQ(error("geometry: rectangle, body_width: 60, body_height: 30, corner_radius: 15"),
-              at + ".corner_radius: expected at most 14.85 (mm), which leaves some of every side, found 15");
+    EXPECT_EQ(
+        error("geometry: rectangle, body_width: 60, body_height: 30, corner_radius: 15"),
+        at +
+            ".corner_radius: expected at most 14.85 (mm), which leaves some of every side, found 15; for half circles, use "
+            "geometry: capsule");
     EXPECT_EQ(error("geometry: rectangle, corner_radius: -1").substr(0, at.size() + 25),
               at + ".corner_radius: expected ");
     std::string const parts = at + ".parts";
@@ -98,7 +101,9 @@ TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
               std::string::npos);
     EXPECT_EQ(error("geometry: compound, parts: [{geometry: disk, radius: 20}, {geometry: disk, radius: 20, x: 30}, "
                     "{geometry: disk, radius: 20, x: 80.2}]"),
-              parts + ".2: hangs together with no part before it; parts have to overlap or touch");
+              parts +
+                  ".2: is not connected to part 0, nor to a part that is: the nearest of these is 10.2 mm away; parts "
+                  "have to overlap or touch");
     EXPECT_EQ(error("geometry: compound, parts: [{geometry: compound}]"),
               parts + ".0.geometry: expected one of disk, rectangle, capsule, triangle, polygon, found 'compound'");
     EXPECT_EQ(error("geometry: compound, parts: [{radius: 20}]"),
@@ -114,6 +119,37 @@ TEST(ShapeKeys, PartsMayTouchInAnyOrder) {
     EXPECT_EQ(load_error(object("geometry: compound, parts: [{geometry: disk, radius: 20}, "
                                 "{geometry: disk, radius: 20, x: 80}, {geometry: disk, radius: 20, x: 40}]")),
               "no error");
+}
+
+/// However thin they are, and wherever they cross.
+TEST(ShapeKeys, ThinPartsMayCross) {
+    for (int i = -9; i <= 9; i += 3) {
+        std::string const at = "x: " + std::to_string(0.37 * i) + ", y: " + std::to_string(3.9 - 0.71 * i);
+        EXPECT_EQ(load_error(object("geometry: compound, parts: [{geometry: rectangle, body_width: 1000, "
+                                    "body_height: 0.5}, {geometry: rectangle, body_width: 0.5, body_height: 1000, " +
+                                    at + "}]")),
+                  "no error")
+            << at;
+    }
+}
+
+TEST(ShapeKeys, LargestCornerRadiusThatIsNamedIsTaken) {
+    std::string const corners = "geometry: polygon, corners: [[0, 0], [100, 0], [100, 100]], corner_radius: ";
+    std::string const error = load_error(object(corners + "50"));
+    std::string const named = error.substr(error.find("at most ") + 8);
+    EXPECT_EQ(load_error(object(corners + named.substr(0, named.find(' ')))), "no error") << error;
+    // A corner in the middle of a side counts for nothing.
+    EXPECT_EQ(load_error(object("geometry: polygon, corner_radius: 5, corners: [[0, 0], [50, 0], [100, 0], [100, 100], "
+                                "[0, 100]]")),
+              "no error");
+}
+
+TEST(ShapeKeys, AngleInRadiansIsWarnedOf) {
+    Warnings const warnings;
+    (void)load(
+        object("geometry: compound, parts: [{geometry: rectangle, body_width: 60, body_height: 10}, "
+               "{geometry: rectangle, body_width: 60, body_height: 10, angle_deg: 1.5708}]"));
+    EXPECT_NE(warnings.text().find("if you meant radians"), std::string::npos) << warnings.text();
 }
 
 }  // namespace

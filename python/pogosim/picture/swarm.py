@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,7 +22,17 @@ from pogosim.picture.palette import NO_LED, led_colours
 from pogosim.picture.selection import checked, numbers_runs, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
-from pogosim.scene import Category, Lamp, bounds, ray_names, read_categories, read_lamps, read_periodic, read_top_speed
+from pogosim.scene import (
+    Category,
+    Lamp,
+    bounds,
+    lists_of_shapes,
+    ray_names,
+    read_categories,
+    read_lamps,
+    read_periodic,
+    read_top_speed,
+)
 from pogosim.several_files import configuration_of
 from pogosim.shapes import Floats, Shape
 from pogosim.times import slack_s, with_exact_times
@@ -162,6 +173,13 @@ def read_recording(
         checked_column(rows, str(color_by))
     configuration = configuration_of(metadata)
     categories = read_categories(configuration)
+    for name in lists_of_shapes(configuration):
+        warnings.warn(
+            f"objects.{name}: its entries have different shapes, and all are drawn as the last one. Give them "
+            "categories of their own; frames of the simulator (save_video_period) are right",
+            RuntimeWarning,
+            stacklevel=2,
+        )
     rows = completed(with_defaults(with_categories(rows, metadata)))
     is_periodic = read_periodic(configuration)
     top_speed_mm_s = read_top_speed(configuration)
