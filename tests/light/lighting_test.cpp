@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -111,7 +112,9 @@ TEST(Lighting, LevelsOutsideTheMapAreThoseOfTheNearestCell) {
 // ---- a map that is kept up to date is the one that is made anew ----
 
 Shape random_shape(RandomStream& random) {
-    auto const kind = static_cast<ShapeKind>(random.below(5));
+    constexpr std::array kinds{ShapeKind::disk,     ShapeKind::rectangle, ShapeKind::capsule,
+                               ShapeKind::triangle, ShapeKind::global,    ShapeKind::arena};
+    ShapeKind const kind = kinds[random.below(kinds.size())];
     auto const size = [&] { return 20.0F + static_cast<float>(random.below(600)); };
     return {.kind = kind, .radius_mm = size(), .width_mm = size(), .height_mm = size(), .side_length_mm = size()};
 }
