@@ -72,7 +72,7 @@ public:
         columns_ = {0, map.columns - 1};
         rows_ = {0, map.rows - 1};
         if (map.periodic) {
-            constexpr float kFar = std::numeric_limits<std::int32_t>::max();
+            constexpr float kFar = 0x1p31F;
             columns_ = images_between(-kFar, kFar, source.x / map.cell_mm.x, map.columns);
             rows_ = images_between(-kFar, kFar, source.y / map.cell_mm.y, map.rows);
         }

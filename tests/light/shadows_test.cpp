@@ -182,7 +182,7 @@ TEST(Shadows, WallsHideWhatIsBehindThemFromAnyPlaceOfTheLamp) {
             hidden += is_hidden ? 1 : 0;
         });
         EXPECT_EQ(wrong, 0) << source.x << ", " << source.y;
-        EXPECT_EQ(hidden > 50, source != Vec2(251, 351))
+        EXPECT_EQ(hidden > 50, source != (Vec2{251, 351}))
             << source.x << ", " << source.y;  // all is seen from the pillar
         world.walls_block_light = false;
         light(world, {casting(wide_lamp(source))});
