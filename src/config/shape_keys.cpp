@@ -73,8 +73,8 @@ std::span<K const> size_keys() {
           "Rounds the corners of a rectangle, triangle or polygon, within its sharp corners."}
             .only_if(has_corners),
         K{"corners", Elsewhere{kCorners}, any(), "",
-          "Corners of a convex polygon, in order. Its centre of mass is the object's position, wherever the corners are "
-          "counted from."}
+          "Corners of a convex polygon, in order. Its centre of mass is the object's position, wherever the corners "
+          "are counted from."}
             .only_if([](Shape const& shape) { return shape.kind == ShapeKind::polygon; }),
     };
     return keys;

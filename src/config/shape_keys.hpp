@@ -17,7 +17,7 @@ inline constexpr Range kBodyLength = between(1e-3, kMaxLength).usually_from(1);
 inline constexpr Range kLengthOrZero = between(0, kMaxLength).usually_from(1);
 inline constexpr Range kDegrees = between(-360, 360);
 
-/// Notes angles of a map that are probably in radians: nearly all of those have a fraction, and few angles in degrees do.
+/// Notes angles of a map that are probably in radians: nearly all of those have a fraction, few angles in degrees do.
 void look_for_radians(MapReader const& reader, UnitSlips& slips);
 
 inline constexpr Range kCoordinate = between(-kMaxLength, kMaxLength).usually_from(1);

@@ -5,8 +5,8 @@
 
 namespace pogosim {
 
-/// All points within `radius_mm` of a convex polygon, whose corners run clockwise on the screen. With one corner it is a
-/// disk, with two a capsule.
+/// All points within `radius_mm` of a convex polygon, whose corners run clockwise on the screen. With one corner it is
+/// a disk, with two a capsule.
 struct RoundedPolygon {
     Polygon corners_mm;
     float radius_mm = 0.0F;
@@ -36,8 +36,8 @@ bool contains(RoundedPolygon const& part, Vec2 point_mm);
 /// Turned by the angle around the origin, then moved.
 RoundedPolygon moved(RoundedPolygon const& part, Vec2 offset_mm, float turn_rad);
 
-/// The convex polygon with every side moved inwards by so much, mm (outwards when negative, and to sharp corners). Sides
-/// that are cut off are gone; a polygon that is cut off as a whole is empty.
+/// The convex polygon with every side moved inwards by so much, mm (outwards when negative, and to sharp corners).
+/// Sides that are cut off are gone; a polygon that is cut off as a whole is empty.
 Polygon inset(Polygon const& corners_mm, float inwards_mm);
 
 }  // namespace pogosim

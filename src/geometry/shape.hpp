@@ -31,7 +31,7 @@ Shape centred(Shape const& shape);
 /// What a body of this shape consists of. Empty for global and arena.
 std::vector<RoundedPolygon> convex_parts(Shape const& shape);
 
-/// Of all parts together.
+/// Those of all parts together.
 AreaMoments moments_of(Shape const& shape);
 
 /// The largest `corner_radius_mm` that the shape can have, mm: every side keeps some of its length.
@@ -57,8 +57,8 @@ Polygon outline(Shape const& shape, int disk_corners = 128);
 /// The same of each part of a compound; of other shapes, the outline if they have one.
 std::vector<Polygon> outlines(Shape const& shape, int disk_corners = 128);
 
-/// Distance from the shape's origin to its border in a direction, a unit vector, mm: to where one leaves it for the last
-/// time. A compound that does not lie that way: 0. The shape is not global or arena.
+/// Distance from the shape's origin to its border in a direction (a unit vector), mm: to where one leaves it for the
+/// last time; 0 if a compound has nothing in that direction. The shape is not global or arena.
 float reach(Shape const& shape, Vec2 towards);
 
 /// The same shape with every side moved inwards by so much, mm (outwards when negative). Sizes do not fall below 0. A

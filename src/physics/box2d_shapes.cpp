@@ -74,8 +74,8 @@ Polygon strip(Vec2 from_mm, Vec2 to_mm, float width_mm) {
     return {from_mm + out_mm, to_mm + out_mm, to_mm, from_mm};
 }
 
-/// Box2D has no rounded polygons that roll over their corners, so one is put together: its core, a strip along each side
-/// and a disk at each corner.
+/// Box2D has no rounded polygons that roll over their corners, so one is put together: its core, a strip along each
+/// side and a disk at each corner.
 void add_part(b2Body& body, RoundedPolygon const& part, b2FixtureDef const& fixture) {
     Polygon const& corners = part.corners_mm;
     if (corners.size() > 2) {

@@ -257,8 +257,8 @@ Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
 Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm) {
     Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
     float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
-    // Where a side of the hull separates them better than the edge, the hull is in front of an end of the edge, or beside
-    // it: it may reach far behind the line of a short edge without touching it.
+    // Where a side of the hull separates them better than the edge, the hull is in front of an end of the edge, or
+    // beside it: it may reach far behind the line of a short edge without touching it.
     bool const is_beside = separation_mm(hull, side) > above_edge_mm + kPreferenceMm;
     bool const is_behind = dot(hull.centre_mm - side.from_mm, side.normal) < 0.0F;
     if (!is_beside && !is_behind && above_edge_mm < reach_mm + hull.radius_mm) {

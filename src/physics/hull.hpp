@@ -12,8 +12,8 @@ namespace pogosim {
 
 inline constexpr std::uint32_t kMostCorners = 8;
 
-/// All points within `radius_mm` of a convex polygon. A disk has one corner. A capsule, whose polygon is a line, has four
-/// sides: along the line, across its end, back again, and across its start. The sides across have no length, but a
+/// All points within `radius_mm` of a convex polygon. A disk has one corner. A capsule, whose polygon is a line, has
+/// four sides: along the line, across its end, back again, and across its start. The sides across have no length, but a
 /// direction.
 struct Hull {
     std::array<Vec2, kMostCorners> corner_mm{};  // clockwise on the screen
@@ -47,7 +47,7 @@ struct Manifold {
 /// as in E. Catto, "Contact manifolds", Game Developers Conference 2007.
 Manifold touches_of(Hull const& a, Hull const& b, float reach_mm);
 
-/// The touches of a hull with an edge of a wall. A hull whose centre is behind the edge does not touch it, see gap_to().
+/// The touches of a hull with an edge of a wall. A hull whose centre is behind the edge does not touch it: see gap_to.
 Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm);
 
 /// The distance between two hulls, not both of which are disks; negative when they overlap: by how much at least.

@@ -91,7 +91,8 @@ TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
     EXPECT_EQ(
         error("geometry: rectangle, body_width: 60, body_height: 30, corner_radius: 15"),
         at +
-            ".corner_radius: expected at most 14.85 (mm), which leaves some of every side, found 15; for half circles, use "
+            ".corner_radius: expected at most 14.85 (mm), which leaves some of every side, found 15; for half circles, "
+            "use "
             "geometry: capsule");
     EXPECT_EQ(error("geometry: rectangle, corner_radius: -1").substr(0, at.size() + 25),
               at + ".corner_radius: expected ");
