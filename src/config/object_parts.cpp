@@ -251,9 +251,11 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     BodySpec& body = object.spec.body.emplace();
     reader.read(body_keys(), body);
     body.density = std::max(body.density, kLeastDensity);
-    bool const is_on_wheels = object.spec.robot && object.spec.robot->model.has_motors();
-    body.blocks_light = !is_on_wheels;
-    reader.read(is_on_wheels ? shadow_of_robot_keys() : shadow_keys(), body);
+    // Robots that drive hardly do in reality, and a membrane that does is dark inside.
+    bool const lets_light_pass =
+        object.spec.robot && (object.spec.robot->model.has_motors() || object.spec.robot->model.sends_along_outline);
+    body.blocks_light = !lets_light_pass;
+    reader.read(lets_light_pass ? shadow_of_robot_keys() : shadow_keys(), body);
 }
 
 void read_blocking(MapReader& reader, ObjectConfig& object) {

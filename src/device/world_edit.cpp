@@ -2,11 +2,12 @@
 
 namespace pogosim {
 
-bool WorldEdit::set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) const {
+bool WorldEdit::set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) {
     if (object.body == kNone || !is_free(object, centre_mm)) {
         return false;
     }
     pogosim::set_pose(world, object, centre_mm, heading_rad);
+    light_is_stale = true;  // it may throw a shadow
     return true;
 }
 

@@ -14,11 +14,11 @@ namespace pogosim {
 struct WorldEdit {
     std::function<bool(Object const& object, Vec2 centre_mm)> is_free{};  // of walls
     std::function<void()> update_light{};                                 // takes the settings of lamps over
-    bool light_is_stale = false;                                          // a setting has changed since
+    bool light_is_stale = false;                                          // a setting or a shadow has changed since
 
     /// Moves an object to another pose, at rest. Returns false, and leaves it, if it has no body, or if the place is in
     /// a wall or outside of the arena.
-    bool set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad) const;
+    bool set_pose(World& world, Object const& object, Vec2 centre_mm, float heading_rad);
 
     /// The light follows at the next step, or with settle_light().
     void set_lamp(World& world, std::size_t lamp, LampSetting const& setting);

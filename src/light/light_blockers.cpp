@@ -262,9 +262,19 @@ bool LightBlockers::update(World const& world) {
     return has_changed;
 }
 
-void LightBlockers::add_shadow(std::size_t index, Vec2 offset_mm, Hidden& hidden) const {
-    Blocker const& blocker = blockers_[index];
-    BlockerPose const& pose = poses_[index];
+std::size_t LightBlockers::end_of_body(std::size_t first) const {
+    std::size_t last = first + 1;
+    while (last < blockers_.size() && blockers_[first].next_body == kNone &&
+           blockers_[last].body == blockers_[first].body) {
+        ++last;
+    }
+    return last;
+}
+
+/// Blockers from `first` on are all parts of a body.
+void LightBlockers::add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden) const {
+    Blocker const& blocker = blockers_[first];
+    BlockerPose const& pose = poses_[first];
     bool const has_sensors = has_sensors_[blocker.body];
     if (blocker.next_body != kNone) {
         hidden.behind_edge(offset_mm - pose.axis, offset_mm + pose.axis);
@@ -274,13 +284,24 @@ void LightBlockers::add_shadow(std::size_t index, Vec2 offset_mm, Hidden& hidden
         hidden.behind_disk(offset_mm, pose.radius_mm, has_sensors);
         return;
     }
-    Polygon turned;
-    for (Vec2 const corner : blocker.corners) {
-        turned.push_back(offset_mm + rotate(corner, pose.axis));
+    std::vector<Polygon> parts;
+    for (std::size_t i = first; i < end_of_body(first); ++i) {
+        Polygon& turned = parts.emplace_back();
+        for (Vec2 const corner : blockers_[i].corners) {
+            turned.push_back(offset_mm + rotate(corner, pose.axis));
+        }
     }
-    hidden.behind_outlines(std::span(&turned, 1), [&](Point centre, int) {
-        return !has_sensors || distance_to_outline(turned, {static_cast<float>(centre.x),
-                                                            static_cast<float>(centre.y)}) >= hidden.margin_mm();
+    auto const is_within = [&](Vec2 place_mm) {
+        return std::ranges::any_of(parts, [&](Polygon const& part) { return contains(part, place_mm); });
+    };
+    if (is_within({})) {
+        return;  // the lamp stands in it
+    }
+    // Light sensors are on the disk around the body.
+    float const clear_mm = has_sensors ? pose.radius_mm + hidden.margin_mm() : 0.0F;
+    hidden.behind_outlines(parts, [&](Point centre, int) {
+        Vec2 const place_mm{static_cast<float>(centre.x), static_cast<float>(centre.y)};
+        return squared_length(place_mm - offset_mm) >= clear_mm * clear_mm && !is_within(place_mm);
     });
 }
 
@@ -303,7 +324,7 @@ void LightBlockers::find_hidden(World const& world, Vec2 source_mm, std::vector<
     }
     Vec2 const size = world.arena.bounds.size();
     int const images = world.periodic ? 1 : 0;
-    for (std::size_t i = 0; i < blockers_.size(); ++i) {
+    for (std::size_t i = 0; i < blockers_.size(); i = end_of_body(i)) {
         Vec2 const nearest = minimum_image(world, source_mm, poses_[i].position_mm);
         float const radius = poses_[i].radius_mm;
         for (int column = -images; column <= images; ++column) {

@@ -26,7 +26,8 @@ private:
     class Hidden;
 
     void start(World const& world);
-    void add_shadow(std::size_t index, Vec2 offset_mm, Hidden& hidden) const;
+    std::size_t end_of_body(std::size_t first) const;
+    void add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden) const;
 
     bool has_started_ = false;
     std::size_t body_count_ = 0;  // of the world
