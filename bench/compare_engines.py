@@ -31,7 +31,7 @@ RADIUS_MM = 26.5
 CONTACT_MM = 1.5  # robots with a smaller gap are in contact
 DURATION_S = 60.0
 START_S = 10.0  # not counted: robots leave their first places
-INTERVAL_S = 0.4  # whole steps of 1, 5, 10 and 16 ms
+INTERVAL_S = 0.5
 LAG_S = 10.0  # of displacements
 COLUMNS = (
     "contacts per robot",

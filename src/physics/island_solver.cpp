@@ -171,9 +171,7 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
         Four const bouncing_mm_s =
             smaller(-places.restitution * speed_mm_s, larger(-speed_mm_s, all_four(kMostBounceMmS)));
         Four const meeting_mm_s = -gap_mm * times.per_h;
-        // As in demand_of(): nothing would take back the speed of what overlaps by less than the tolerance.
-        FourInts const is_pushed = gap_mm < -kContactToleranceMm;
-        Four const pushed_mm_s = is_pushed ? smaller(-times.push_rate * gap_mm, all_four(kFastestPushMmS)) : Four{};
+        Four const pushed_mm_s = smaller(-times.push_rate * gap_mm, all_four(kFastestPushMmS));
         FourInts const is_elastic = places.restitution > 0.0F;
         FourInts const is_free = gap_mm > 0.0F;
         FourInts const bounces =

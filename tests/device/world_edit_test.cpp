@@ -20,7 +20,7 @@ WorldEdit edit_of_half_a_world() {
 TEST(WorldEdit, MovesWhatHasABodyToPlacesFreeOfWalls) {
     World world = square_world();
     add_robot(world, {100, 100});
-    WorldEdit const edit = edit_of_half_a_world();
+    WorldEdit edit = edit_of_half_a_world();
     EXPECT_TRUE(edit.set_pose(world, world.objects[0], {300, 200}, 1.0F));
     EXPECT_EQ(world.bodies.position_mm[0], (Vec2{300, 200}));
     EXPECT_FALSE(edit.set_pose(world, world.objects[0], {600, 200}, 1.0F));
@@ -31,7 +31,7 @@ TEST(WorldEdit, MovesWhatHasABodyToPlacesFreeOfWalls) {
 TEST(WorldEdit, EngineIsToldWhatWasWritten) {
     World world = square_world();
     add_robot(world, {100, 100}, 0.5F);
-    WorldEdit const edit = edit_of_half_a_world();
+    WorldEdit edit = edit_of_half_a_world();
     edit.set_pose(world, world.objects[0], {300, 200}, 1.0F);
     edit.set_pose(world, world.objects[0], {300, 200}, 1.0F);
     set_velocity(world.bodies, 0, {1, 2}, 3.0F);

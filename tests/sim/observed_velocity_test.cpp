@@ -156,7 +156,7 @@ TEST_P(ObservedVelocity, RobotInACornerTouchesTheWallAndTheRobotBehindIt) {
     run(2.0);
     EXPECT_EQ(simulation_->inspector().inspect(0).touches, (std::vector<std::string>{"wall", "robot 1"}));
     EXPECT_EQ(simulation_->inspector().inspect(1).touches, std::vector<std::string>{"robot 0"});
-    expect_velocity({}, 0.5F);  // it sinks into the wall by up to the tolerance of contacts, and out of it again
+    expect_velocity({}, 0.05F);
 }
 
 TEST_P(ObservedVelocity, ObjectsOfOtherCategoriesAreTouchedByName) {
