@@ -22,9 +22,9 @@ NAMES = ("shapes.png",)
 def draw(folder: Path) -> dict[str, Picture]:
     """Draw both times side by side."""
     data = folder / "shapes.feather"
-    program = ROOT / "examples/run_and_tumble/run_and_tumble"
+    program = str(ROOT / "examples/run_and_tumble/run_and_tumble")
     settings = f"data_filename={data}"
-    command = [program, "-c", ROOT / "conf/shapes.yaml", "-g", "-q", "--set", settings]
+    command = [program, "-c", str(ROOT / "conf/shapes.yaml"), "-g", "-q", "--set", settings]
     subprocess.run(command, check=True, timeout=300, cwd=ROOT)
     figure = Figure(figsize=(10, 5.2), facecolor=PAPER, layout="constrained")
     for axes, time_s in zip(figure.subplots(1, 2), (0.0, 60.0), strict=True):

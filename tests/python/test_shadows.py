@@ -76,7 +76,8 @@ def lights(result: Run) -> list[list[int]]:
     """What the sensors of the robots said last."""
     rows = result.frame()
     last = rows[(rows["time"] == rows["time"].max()) & (rows["robot_category"] == "robots")].sort_values("robot_id")
-    return last[["back", "left", "right"]].astype(int).to_numpy().tolist()
+    values: list[list[int]] = last[["back", "left", "right"]].astype(int).to_numpy().tolist()
+    return values
 
 
 def test_robot_behind_a_pillar_is_in_the_dark(program: Path, tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ SQUARE = {"arena_file": "arenas/square.csv", "arena_surface": 1.0e6}
 
 def state_hashes(engine: str, threads: int) -> list[str]:
     """Run conf/shapes.yaml for two seconds; return the hashes of its states."""
-    command = [example("run_and_tumble"), "-c", ROOT / "conf/shapes.yaml", "-g", "--hash", "50"]
+    command = [str(example("run_and_tumble")), "-c", str(ROOT / "conf/shapes.yaml"), "-g", "--hash", "50"]
     for setting in (f"threads={threads}", f"physics_engine={engine}", "simulation_time=2", "enable_data_logging=false"):
         command += ["--set", setting]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
@@ -124,7 +124,7 @@ def test_infrared_passes_the_opening_of_a_tray_and_not_its_back(tmp_path: Path) 
         "objects": objects,
     }
     (tmp_path / "conf.yaml").write_text(yaml.safe_dump(settings))
-    command = [ROOT / "build/release/src/pogosim-without-program", "-c", "conf.yaml", "-g"]
+    command = [str(ROOT / "build/release/src/pogosim-without-program"), "-c", "conf.yaml", "-g"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
     log = pd.read_feather(tmp_path / "log.feather")

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "record/scratch.hpp"
 #include "lamps/spot_lamp.hpp"
+#include "record/scratch.hpp"
 #include "support/objects.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
