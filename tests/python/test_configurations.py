@@ -86,7 +86,8 @@ def test_resolved_configuration_says_that_the_arena_file_is_periodic(tmp_path: P
 
 
 def test_every_configuration_is_named_by_an_example() -> None:
-    others = {"conf/test.yaml", "conf/original.yaml", "conf/magnetometer.yaml"}  # of batches, and of pages
+    of_batches_and_pages = ("test", "original", "magnetometer", "shapes")
+    others = {f"conf/{name}.yaml" for name in of_batches_and_pages}
     assert {f"conf/{path.name}" for path in CONFIGURATIONS} == set(NAMED.values()) | others
 
 
