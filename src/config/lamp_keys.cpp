@@ -23,6 +23,16 @@ std::span<Key<LampSpec> const> lamp_keys() {
     return keys;
 }
 
+std::span<Key<Vec2> const> lighthouse_centre_keys() {
+    using K = Key<Vec2>;
+    static std::array const keys{
+        K{"x", &Vec2::x, kCoordinate, "mm",
+          "Centre; with `geometry` global or arena, relative to the centre of the arena's bounding box."},
+        K{"y", &Vec2::y, kCoordinate, "mm", "See x."},
+    };
+    return keys;
+}
+
 }  // namespace
 
 void make_lamp_object(MapReader& reader, ObjectConfig& object, LampSpec lamp, bool has_place) {
@@ -35,21 +45,19 @@ void make_lamp_object(MapReader& reader, ObjectConfig& object, LampSpec lamp, bo
     object.spec.lamp = std::move(lamp);
 }
 
-std::span<Key<Vec2> const> lighthouse_centre_keys() {
-    using K = Key<Vec2>;
-    static std::array const keys{
-        K{"x", &Vec2::x, kCoordinate, "mm",
-          "Centre; with `geometry` global or arena, relative to the centre of the arena's bounding box."},
-        K{"y", &Vec2::y, kCoordinate, "mm", "See x."},
-    };
-    return keys;
-}
-
 void warn_of_lone_coordinate(MapReader const& reader, std::string_view x, std::string_view y, Vec2 centre_mm) {
     if (auto const lone = reader.lone_key(x, y)) {
         log().warn("{}: {}: {} without {}; {} is {:g}. Specify both", reader.find(lone->given)->where(),
                    reader.path_of(lone->given), lone->given, lone->missing, lone->missing,
                    lone->missing == y ? centre_mm.y : centre_mm.x);
+    }
+}
+
+void read_lighthouse_place(MapReader& reader, Shape& shape, Vec2& centre_mm) {
+    read_shape(reader, any_geometry_keys(), shape);
+    reader.read(lighthouse_centre_keys(), centre_mm);
+    if (!is_everywhere(shape)) {
+        warn_of_lone_coordinate(reader, "x", "y", centre_mm);
     }
 }
 

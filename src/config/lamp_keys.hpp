@@ -18,8 +18,8 @@ inline constexpr Range kHalfWidth = above(0).up_to(std::numbers::pi);
 inline constexpr Range kAngle = between(-1e4, 1e4).usually_up_to(6.3);
 inline constexpr Range kAngularSpeed = between(-1e4, 1e4).usually_up_to(50);
 
-/// `x` and `y` of a lighthouse.
-std::span<Key<Vec2> const> lighthouse_centre_keys();
+/// The shape that a lighthouse can light, and where it stands.
+void read_lighthouse_place(MapReader& reader, Shape& shape, Vec2& centre_mm);
 
 /// Makes the object this lamp, whose own keys have been read, and reads those that all lamps have. Light without a
 /// place, such as the same level everywhere, casts no shadows.

@@ -304,17 +304,18 @@ void read_shape(MapReader& reader, std::span<K const> geometry_keys, Shape& shap
     if (!reader.collect([&] { read_convex(reader, geometry_keys, shape); })) {
         shape = {};
     }
-    shape = centred(shape);
+    if (shape.kind == ShapeKind::polygon) {
+        shape = centred(shape);
+    }
 }
 
 void read_solid_shape(MapReader& reader, std::span<K const> geometry_keys, Shape& shape) {
     read_shape(reader, geometry_keys, shape);
     reader.read(part_list_keys(), shape);
     reader.collect([&] { require_list(reader, "parts", kParts); });
-    if (shape.kind == ShapeKind::compound && !reader.collect([&] { read_parts(reader, shape); })) {
-        shape = {};
+    if (shape.kind == ShapeKind::compound) {
+        shape = reader.collect([&] { read_parts(reader, shape); }) ? centred(shape) : Shape();
     }
-    shape = centred(shape);
 }
 
 std::vector<KeyDescription> shape_part_keys() {

@@ -150,11 +150,7 @@ inline std::span<Key<AlternatingRaysSpec> const> alternating_rays_keys() {
 
 inline void read_alternating_rays_of_light(MapReader& reader, ObjectConfig& object) {
     AlternatingRaysSpec spec;
-    read_shape(reader, any_geometry_keys(), spec.shape);
-    reader.read(lighthouse_centre_keys(), spec.centre_mm);
-    if (!is_everywhere(spec.shape)) {
-        warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
-    }
+    read_lighthouse_place(reader, spec.shape, spec.centre_mm);
     reader.read(alternating_rays_keys(), spec);
     make_lamp_object(reader, object, spec, /*has_place=*/true);
 }

@@ -117,11 +117,7 @@ inline std::span<Key<RotatingRaySpec> const> rotating_ray_keys() {
 
 inline void read_rotating_ray_of_light(MapReader& reader, ObjectConfig& object) {
     RotatingRaySpec spec;
-    read_shape(reader, any_geometry_keys(), spec.shape);
-    reader.read(lighthouse_centre_keys(), spec.centre_mm);
-    if (!is_everywhere(spec.shape)) {
-        warn_of_lone_coordinate(reader, "x", "y", spec.centre_mm);
-    }
+    read_lighthouse_place(reader, spec.shape, spec.centre_mm);
     reader.read(rotating_ray_keys(), spec);
     make_lamp_object(reader, object, spec, /*has_place=*/true);
 }

@@ -17,11 +17,12 @@
 namespace pogosim {
 namespace {
 
-using testing::add_robot;
+using testing::add_body;
 using testing::BoxPart;
 using testing::capsule;
 using testing::compound;
 using testing::deepest_overlap_mm;
+using testing::deepest_when_all_push_mm;
 using testing::disk;
 using testing::energy;
 using testing::extremes_in;
@@ -41,14 +42,6 @@ protected:
     bool is_ours() const { return GetParam() == "disk"; }
 };
 
-std::uint32_t add(World& world, Shape const& shape, Vec2 place_mm, float heading_rad, BodySpec const& body = {}) {
-    ObjectSpec spec;
-    spec.shape = shape;
-    spec.robot.emplace();
-    spec.body = body;
-    return add_robot(world, place_mm, heading_rad, spec);
-}
-
 /// A ball of radius 20 mm that hits something at rest with 100 mm/s along +x, without friction: both velocities after
 /// it, and the spin. `lever_mm`: of the point of contact, below the other's centre of mass; the normal is along x.
 void expect_impact(Shape const& shape, float lever_mm, float restitution) {
@@ -57,8 +50,8 @@ void expect_impact(Shape const& shape, float lever_mm, float restitution) {
     World world = square_world(2000.0F);
     world.time_step_s = 0.001;
     BodySpec const smooth{.friction = 0.0F, .restitution = restitution};
-    std::uint32_t const hit = add(world, shape, {1000.0F, 1000.0F}, 0.0F, smooth);
-    std::uint32_t const ball = add(world, disk(20.0F), {880.0F, 1000.0F + lever_mm}, 0.0F, smooth);
+    std::uint32_t const hit = add_body(world, shape, {1000.0F, 1000.0F}, 0.0F, smooth);
+    std::uint32_t const ball = add_body(world, disk(20.0F), {880.0F, 1000.0F + lever_mm}, 0.0F, smooth);
     world.bodies.velocity_mm_s[ball] = {100.0F, 0.0F};
     auto const engine = make_engine(world, {});
     for (int step = 0; step < 1500 && world.bodies.velocity_mm_s[hit] == Vec2{}; ++step) {
@@ -94,9 +87,10 @@ TEST_P(SolidShapes, ImpactsAreThoseOfTheClosedForm) {
 TEST_P(SolidShapes, BallInsideATrayPushesItsBack) {
     World world = square_world(2000.0F);
     Shape const shape = tray(120.0F, 120.0F, 12.0F);
-    std::uint32_t const pushed = add(world, shape, {1000.0F, 1000.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F});
+    std::uint32_t const pushed =
+        add_body(world, shape, {1000.0F, 1000.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F});
     std::uint32_t const ball =
-        add(world, disk(20.0F), {1050.0F, 1000.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F});
+        add_body(world, disk(20.0F), {1050.0F, 1000.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F});
     auto const engine = make_engine(world, {});
     float deepest_mm = 0.0F;
     for (int step = 0; step < 500; ++step) {
@@ -126,8 +120,8 @@ TEST_P(SolidShapes, NothingLeavesAFrame) {
             for (Shape const& shape : {disk(15.0F), capsule(50.0F, 20.0F), octagon(30.0F), tray(40.0F, 40.0F, 6.0F)}) {
                 World world = square_world(3000.0F);
                 BodySpec const elastic{.restitution = 1.0F, .fixed = is_fixed};
-                std::uint32_t const ring = add(world, frame(), {1500.0F, 1500.0F}, 0.0F, elastic);
-                std::uint32_t const prisoner = add(world, shape, {1490.0F, 1503.0F}, 0.4F, {.restitution = 1.0F});
+                std::uint32_t const ring = add_body(world, frame(), {1500.0F, 1500.0F}, 0.0F, elastic);
+                std::uint32_t const prisoner = add_body(world, shape, {1490.0F, 1503.0F}, 0.4F, {.restitution = 1.0F});
                 world.bodies.velocity_mm_s[prisoner] = speed_mm_s * direction(0.7F);
                 auto const engine = make_engine(world, {});
                 for (int step = 0; step < 400; ++step) {
@@ -164,15 +158,16 @@ World packed(float coverage, BodySpec const& body) {
     Vec2 const offset_mm{(800.0F * -10.0F + 400.0F * -20.0F) / 1200.0F, (800.0F * 10.0F - 400.0F * 10.0F) / 1200.0F};
     for (int row = 0; row < 3; ++row) {
         fill_row({60.0F, 20.0F}, 800.0F + kPi * 100.0F,
-                 [&](Vec2 at_mm, float) { add(world, capsule(60.0F, 20.0F), at_mm, 0.0F, body); });
+                 [&](Vec2 at_mm, float) { add_body(world, capsule(60.0F, 20.0F), at_mm, 0.0F, body); });
         fill_row({40.0F, 40.0F}, mass_of(octagon(40.0F)).area_mm2,
-                 [&](Vec2 at_mm, float) { add(world, octagon(40.0F), at_mm, 0.0F, body); });
+                 [&](Vec2 at_mm, float) { add_body(world, octagon(40.0F), at_mm, 0.0F, body); });
         fill_row({60.0F, 40.0F}, 2400.0F, [&](Vec2 at_mm, float scale) {
-            add(world, angle, at_mm + scale * offset_mm, 0.0F, body);
-            add(world, angle, at_mm - scale * offset_mm, kPi, body);
+            add_body(world, angle, at_mm + scale * offset_mm, 0.0F, body);
+            add_body(world, angle, at_mm - scale * offset_mm, kPi, body);
         });
-        fill_row({50.0F, 30.0F}, mass_of(rounded(rectangle(50.0F, 30.0F), 5.0F)).area_mm2,
-                 [&](Vec2 at_mm, float) { add(world, rounded(rectangle(50.0F, 30.0F), 5.0F), at_mm, 0.0F, body); });
+        fill_row({50.0F, 30.0F}, mass_of(rounded(rectangle(50.0F, 30.0F), 5.0F)).area_mm2, [&](Vec2 at_mm, float) {
+            add_body(world, rounded(rectangle(50.0F, 30.0F), 5.0F), at_mm, 0.0F, body);
+        });
     }
     world.arena = make_arena({{{0, 0}, {width_mm, 0}, {width_mm, y_mm}, {0, y_mm}}});
     return world;
@@ -197,14 +192,7 @@ TEST_P(SolidShapes, DensePackingDoesNotOverlapNorGainEnergy) {
 TEST_P(SolidShapes, PackingThatAllPushToOneSideStaysApart) {
     World world = packed(0.8F, {.restitution = 0.2F});
     auto const engine = make_engine(world, {});
-    float deepest_mm = 0.0F;
-    for (int step = 0; step < 250; ++step) {
-        for (VelocityCommand& command : world.robots.command) {
-            command = {.velocity_mm_s = {50.0F, 20.0F}, .pending = step % 2 == 0};
-        }
-        engine->advance(world);
-        deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
-    }
+    float const deepest_mm = deepest_when_all_push_mm(world, *engine, {50.0F, 20.0F}, 250);
     EXPECT_LT(deepest_mm, is_ours() ? 0.5F : 6.0F);
 }
 
@@ -213,9 +201,9 @@ TEST_P(SolidShapes, CapsulesRollOverTheEndsOfEachOther) {
     for (float const offset_mm : {0.0F, 5.0F, 12.0F}) {
         World world = square_world(2000.0F);
         BodySpec const body{.density = 1e4F, .friction = 0.0F, .restitution = 0.0F};
-        std::uint32_t const one = add(world, capsule(80.0F, 20.0F), {900.0F, 1000.0F}, 0.0F, body);
-        std::uint32_t const other = add(world, capsule(80.0F, 20.0F), {1000.0F, 1000.0F + offset_mm}, 0.0F,
-                                        {.density = 1e4F, .restitution = 0.0F, .fixed = true});
+        std::uint32_t const one = add_body(world, capsule(80.0F, 20.0F), {900.0F, 1000.0F}, 0.0F, body);
+        std::uint32_t const other = add_body(world, capsule(80.0F, 20.0F), {1000.0F, 1000.0F + offset_mm}, 0.0F,
+                                             {.density = 1e4F, .restitution = 0.0F, .fixed = true});
         world.bodies.velocity_mm_s[one] = {30.0F, 0.0F};
         auto const engine = make_engine(world, {});
         float nearest_mm = 100.0F;
@@ -240,8 +228,8 @@ TEST(Compound, TouchesAcrossTheSeam) {
         World world = square_world(1000.0F);
         world.periodic = true;
         std::uint32_t const pushed =
-            add(world, tray(100.0F, 160.0F, 10.0F), {std::fmod(x_mm, 1000.0F), 30.0F}, kPi, {});
-        std::uint32_t const ball = add(world, disk(20.0F), {x_mm - 140.0F, 962.0F}, 0.0F);
+            add_body(world, tray(100.0F, 160.0F, 10.0F), {std::fmod(x_mm, 1000.0F), 30.0F}, kPi, {});
+        std::uint32_t const ball = add_body(world, disk(20.0F), {x_mm - 140.0F, 962.0F}, 0.0F);
         world.bodies.velocity_mm_s[ball] = {100.0F, 0.0F};
         auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
         for (int step = 0; step < 150; ++step) {
@@ -266,9 +254,10 @@ TEST(Compound, OfTwoHalvesMovesAsTheWhole) {
     std::vector<float> headings_rad;
     for (Shape const& shape : {rectangle(80.0F, 40.0F), halves}) {
         World world = square_world(1000.0F);
-        std::uint32_t const box = add(world, shape, {500.0F, 500.0F}, 0.3F, {.friction = 0.0F, .restitution = 0.5F});
+        std::uint32_t const box =
+            add_body(world, shape, {500.0F, 500.0F}, 0.3F, {.friction = 0.0F, .restitution = 0.5F});
         std::uint32_t const ball =
-            add(world, disk(26.5F), {400.0F, 480.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.5F});
+            add_body(world, disk(26.5F), {400.0F, 480.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.5F});
         world.bodies.velocity_mm_s[ball] = {100.0F, 0.0F};
         auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
         for (int step = 0; step < 200; ++step) {
@@ -289,7 +278,7 @@ TEST_P(SolidShapes, AreHeldByWalls) {
           polygon({{-30.0F, 0.0F}, {25.0F, -2.0F}, {25.0F, 2.0F}})}) {
         for (float const speed_mm_s : {60.0F, 3000.0F}) {
             World world = square_world(400.0F);
-            std::uint32_t const body = add(world, shape, {200.0F, 200.0F}, 0.2F, {.restitution = 0.6F});
+            std::uint32_t const body = add_body(world, shape, {200.0F, 200.0F}, 0.2F, {.restitution = 0.6F});
             world.bodies.angular_velocity_rad_s[body] = 3.0F;
             world.bodies.velocity_mm_s[body] = speed_mm_s * direction(0.9F);
             auto const engine = make_engine(world, {.friction = 0.3F, .restitution = 0.6F});

@@ -16,6 +16,7 @@ namespace {
 
 using testing::add_robot;
 using testing::deepest_overlap_mm;
+using testing::deepest_when_all_push_mm;
 using testing::energy;
 using testing::extremes_in;
 using testing::make_engine;
@@ -117,14 +118,7 @@ TEST_P(Crowds, DenseGasDoesNotOverlapNorGainEnergy) {
 TEST_P(Crowds, RobotsThatAllPushToOneSideStayApart) {
     World world = packed(20, 20, 0.8F, 0.5F);
     auto const engine = make_engine(world, {});
-    float deepest_mm = 0.0F;
-    for (int step = 0; step < 500; ++step) {
-        for (VelocityCommand& command : world.robots.command) {
-            command = {.velocity_mm_s = {50.0F, 0.0F}, .pending = step % 2 == 0};
-        }
-        engine->advance(world);
-        deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
-    }
+    float const deepest_mm = deepest_when_all_push_mm(world, *engine, {50.0F, 0.0F}, 500);
     EXPECT_LT(deepest_mm, is_disk_engine() ? 0.5F : 6.0F);
 }
 

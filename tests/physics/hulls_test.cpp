@@ -20,9 +20,10 @@
 namespace pogosim {
 namespace {
 
-using testing::add_robot;
+using testing::add_body;
 using testing::capsule;
 using testing::deepest_overlap_mm;
+using testing::deepest_when_all_push_mm;
 using testing::disk;
 using testing::energy;
 using testing::extremes_in;
@@ -41,14 +42,6 @@ class MovingHulls : public testing::EachEngine {
 protected:
     bool is_ours() const { return GetParam() == "disk"; }
 };
-
-std::uint32_t add(World& world, Shape const& shape, Vec2 place_mm, float heading_rad, BodySpec const& body = {}) {
-    ObjectSpec spec;
-    spec.shape = shape;
-    spec.robot.emplace();
-    spec.body = body;
-    return add_robot(world, place_mm, heading_rad, spec);
-}
 
 double distance_mm(Vec2 from, Vec2 to, Vec2 point) {
     double const x = to.x - from.x;
@@ -172,13 +165,14 @@ World packed(float coverage, float restitution) {
         for (int column = 0; column < columns; ++column) {
             float const x_mm = lane_mm * (static_cast<float>(column) + 0.5F);
             if (row % 2 == 0) {
-                add(world, rectangle(box_mm, box_mm), {x_mm, y_mm + 0.5F * pitch_mm}, 0.0F, body);
+                add_body(world, rectangle(box_mm, box_mm), {x_mm, y_mm + 0.5F * pitch_mm}, 0.0F, body);
             } else {
                 // Two in a lane, each half as wide.
                 float const half_mm = 0.5F * box_mm;
-                add(world, rectangle(half_mm, box_mm), {x_mm - 0.25F * lane_mm, y_mm + 0.5F * pitch_mm}, 0.0F, body);
-                add(world, disk(0.5F * half_mm), {x_mm + 0.25F * lane_mm, y_mm + 0.25F * pitch_mm}, 0.0F, body);
-                add(world, disk(0.5F * half_mm), {x_mm + 0.25F * lane_mm, y_mm + 0.75F * pitch_mm}, 0.0F, body);
+                add_body(world, rectangle(half_mm, box_mm), {x_mm - 0.25F * lane_mm, y_mm + 0.5F * pitch_mm}, 0.0F,
+                         body);
+                add_body(world, disk(0.5F * half_mm), {x_mm + 0.25F * lane_mm, y_mm + 0.25F * pitch_mm}, 0.0F, body);
+                add_body(world, disk(0.5F * half_mm), {x_mm + 0.25F * lane_mm, y_mm + 0.75F * pitch_mm}, 0.0F, body);
             }
         }
         y_mm += pitch_mm;
@@ -190,8 +184,8 @@ World packed(float coverage, float restitution) {
             bool const points_up = i % 2 == 0;
             float const centre_mm = (points_up ? 2.0F : 1.0F) / 3.0F * height_mm;
             float const x_mm = scale * side_mm * (0.5F * static_cast<float>(i) + 0.5F);
-            add(world, triangle(side_mm), {x_mm, y_mm + 0.5F * (scale - 1.0F) * height_mm + centre_mm},
-                points_up ? 0.0F : kPi, body);
+            add_body(world, triangle(side_mm), {x_mm, y_mm + 0.5F * (scale - 1.0F) * height_mm + centre_mm},
+                     points_up ? 0.0F : kPi, body);
         }
         y_mm += scale * height_mm;
     }
@@ -218,14 +212,7 @@ TEST_P(MovingHulls, DensePackingDoesNotOverlapNorGainEnergy) {
 TEST_P(MovingHulls, PackingThatAllPushToOneSideStaysApart) {
     World world = packed(0.8F, 0.2F);
     auto const engine = make_engine(world, {});
-    float deepest_mm = 0.0F;
-    for (int step = 0; step < 250; ++step) {
-        for (VelocityCommand& command : world.robots.command) {
-            command = {.velocity_mm_s = {50.0F, 20.0F}, .pending = step % 2 == 0};
-        }
-        engine->advance(world);
-        deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
-    }
+    float const deepest_mm = deepest_when_all_push_mm(world, *engine, {50.0F, 20.0F}, 250);
     EXPECT_LT(deepest_mm, is_ours() ? 0.5F : 6.0F);
 }
 
@@ -235,10 +222,10 @@ TEST_P(MovingHulls, RobotsPushARowOfBoxesToTheEndOfACorridor) {
     World world = square_world();
     world.arena = make_arena({{{0, 0}, {length_mm, 0}, {length_mm, width_mm}, {0, width_mm}}});
     for (int i = 0; i < 5; ++i) {
-        add(world, rectangle(80.0F, 60.0F), {400.0F + 90.0F * static_cast<float>(i), 0.5F * width_mm}, 0.0F);
+        add_body(world, rectangle(80.0F, 60.0F), {400.0F + 90.0F * static_cast<float>(i), 0.5F * width_mm}, 0.0F);
     }
     for (float const y_mm : {16.0F, 50.0F}) {
-        add(world, disk(15.0F), {300.0F, y_mm}, 0.0F);
+        add_body(world, disk(15.0F), {300.0F, y_mm}, 0.0F);
     }
     auto const engine = make_engine(world, {});
     float deepest_mm = 0.0F;
@@ -272,7 +259,7 @@ TEST_P(MovingHulls, BoxGoesThroughACorridor) {
                                {300, 285},
                                {300, 500},
                                {0, 500}}});
-    std::uint32_t const box = add(world, rectangle(90.0F, 60.0F), {150.0F, 249.0F}, 0.0F, {.friction = 0.0F});
+    std::uint32_t const box = add_body(world, rectangle(90.0F, 60.0F), {150.0F, 249.0F}, 0.0F, {.friction = 0.0F});
     auto const engine = make_engine(world, {.friction = 0.0F, .restitution = 0.0F});
     for (int step = 0; step < 1800; ++step) {
         world.robots.command[box] = {.velocity_mm_s = {50.0F, 1.0F}, .pending = step % 2 == 0};
@@ -289,7 +276,7 @@ TEST_P(MovingHulls, BoxGoesThroughACorridor) {
 /// The pose of a bar that drops onto a point and slides along it, by the second.
 std::vector<Vec2> poses_of_bar(World world) {
     std::uint32_t const bar =
-        add(world, rectangle(300.0F, 20.0F), {470.0F, 480.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.3F});
+        add_body(world, rectangle(300.0F, 20.0F), {470.0F, 480.0F}, 0.0F, {.friction = 0.0F, .restitution = 0.3F});
     world.bodies.velocity_mm_s[bar] = {60.0F, 40.0F};
     auto const engine =
         make_physics_engine("disk", world, {.friction = 0.0F, .restitution = 0.0F}, testing::one_worker());
@@ -310,7 +297,7 @@ TEST(MovingHull, IsPushedByTheCornerOfAWallAsByAPin) {
     cornered.arena =
         make_arena({{{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}}, {{500, 500}, {530, 560}, {500, 600}, {470, 560}}});
     World pinned = square_world(1000.0F);
-    add(pinned, disk(0.05F), {500.0F, 500.05F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F, .fixed = true});
+    add_body(pinned, disk(0.05F), {500.0F, 500.05F}, 0.0F, {.friction = 0.0F, .restitution = 0.0F, .fixed = true});
     std::vector<Vec2> const by_corner = poses_of_bar(cornered);
     std::vector<Vec2> const by_pin = poses_of_bar(pinned);
     EXPECT_LT(by_pin.back().y, 0.0F);  // it bounced
@@ -330,8 +317,8 @@ TEST_P(MovingHulls, NothingPassesThroughAThinBar) {
             for (Shape const& shape : {disk(10.0F), rectangle(30.0F, 12.0F), triangle(25.0F)}) {
                 World world = square_world(2000.0F);
                 std::uint32_t const bar =
-                    add(world, rectangle(thickness_mm, 1980.0F), {1000.0F, 1000.0F}, 0.0F, {.density = 1e5F});
-                std::uint32_t const shot = add(world, shape, {500.0F, 977.0F}, 0.3F);
+                    add_body(world, rectangle(thickness_mm, 1980.0F), {1000.0F, 1000.0F}, 0.0F, {.density = 1e5F});
+                std::uint32_t const shot = add_body(world, shape, {500.0F, 977.0F}, 0.3F);
                 world.bodies.velocity_mm_s[shot] = {speed_mm_s, 0.0F};
                 auto const engine = make_engine(world, {});
                 for (int step = 0; step < 600; ++step) {
@@ -348,8 +335,9 @@ TEST_P(MovingHulls, NothingPassesThroughAThinBar) {
 TEST_P(MovingHulls, SpinningBarStrikesADisk) {
     for (float const spin_rad_s : {2.0F, 20.0F, 100.0F}) {
         World world = square_world(2000.0F);
-        std::uint32_t const bar = add(world, rectangle(400.0F, 10.0F), {1000.0F, 1000.0F}, 0.0F, {.density = 1e4F});
-        std::uint32_t const ball = add(world, disk(10.0F), {1150.0F, 1060.0F}, 0.0F);
+        std::uint32_t const bar =
+            add_body(world, rectangle(400.0F, 10.0F), {1000.0F, 1000.0F}, 0.0F, {.density = 1e4F});
+        std::uint32_t const ball = add_body(world, disk(10.0F), {1150.0F, 1060.0F}, 0.0F);
         world.bodies.angular_velocity_rad_s[bar] = spin_rad_s;
         auto const engine = make_engine(world, {});
         for (int step = 0; step < 200 && world.bodies.velocity_mm_s[ball] == Vec2{}; ++step) {
@@ -362,7 +350,7 @@ TEST_P(MovingHulls, SpinningBarStrikesADisk) {
 
 TEST_P(MovingHulls, TurnOnTheirOwn) {
     World world = square_world(1000.0F);
-    std::uint32_t const box = add(world, rectangle(80.0F, 40.0F), {300.0F, 500.0F}, 0.5F);
+    std::uint32_t const box = add_body(world, rectangle(80.0F, 40.0F), {300.0F, 500.0F}, 0.5F);
     world.bodies.velocity_mm_s[box] = {30.0F, -10.0F};
     world.bodies.angular_velocity_rad_s[box] = 0.7F;
     auto const engine = make_engine(world, {});
@@ -381,8 +369,8 @@ TEST(MovingHull, TouchesAcrossTheSeam) {
     for (float const x_mm : {500.0F, 990.0F, 1005.0F}) {
         World world = square_world(1000.0F);
         world.periodic = true;
-        std::uint32_t const bar = add(world, rectangle(40.0F, 160.0F), {std::fmod(x_mm, 1000.0F), 30.0F}, 0.0F);
-        std::uint32_t const ball = add(world, disk(26.5F), {x_mm - 100.0F, 990.0F}, 0.0F);
+        std::uint32_t const bar = add_body(world, rectangle(40.0F, 160.0F), {std::fmod(x_mm, 1000.0F), 30.0F}, 0.0F);
+        std::uint32_t const ball = add_body(world, disk(26.5F), {x_mm - 100.0F, 990.0F}, 0.0F);
         world.bodies.velocity_mm_s[ball] = {100.0F, 0.0F};
         auto const engine = make_physics_engine("disk", world, {}, testing::one_worker());
         for (int step = 0; step < 100; ++step) {
@@ -404,7 +392,7 @@ TEST_P(MovingHulls, WedgeComesToRestInAnAcuteCorner) {
     // A corner of 30 degrees, into which a triangle is pushed.
     World world = square_world(1000.0F);
     world.arena = make_arena({{{0, 500}, {866, 0}, {866, 1000}}});
-    std::uint32_t const wedge = add(world, triangle(60.0F), {600.0F, 500.0F}, 0.2F, {.restitution = 0.0F});
+    std::uint32_t const wedge = add_body(world, triangle(60.0F), {600.0F, 500.0F}, 0.2F, {.restitution = 0.0F});
     auto const engine = make_engine(world, {.restitution = 0.0F});
     for (int step = 0; step < 1500; ++step) {
         world.robots.command[wedge] = {.velocity_mm_s = {-60.0F, 0.0F}, .pending = step % 2 == 0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace pogosim {
 namespace {
 
-using testing::add_robot;
+using testing::add_body;
 using testing::BoxPart;
 using testing::capsule;
 using testing::compound;
@@ -26,24 +27,16 @@ using testing::square_world;
 using testing::tray;
 using testing::triangle;
 
-constexpr float kPi = 3.14159265F;
+constexpr float kPi = std::numbers::pi_v<float>;
 constexpr Vec2 kMiddle{510.0F, 510.0F};
 
 /// Where a small thing stands in the middle of the square.
 struct Obstacle {
     std::string name;
     Polygon line;
-    float
-        deepest_mm;  // that a body may sink into it; the inner corner of a tray sinks deeper into an end of a thin wall
+    // That a body may sink into it; the inner corner of a tray sinks deeper into an end of a thin wall.
+    float deepest_mm;
 };
-
-std::uint32_t add(World& world, Shape const& shape, Vec2 place_mm, float heading_rad) {
-    ObjectSpec spec;
-    spec.shape = shape;
-    spec.robot.emplace();
-    spec.body = BodySpec{.restitution = 0.0F};
-    return add_robot(world, place_mm, heading_rad, spec);
-}
 
 float depth_mm(World const& world, std::uint32_t body, Polygon const& line) {
     Hull const wall = hull_of({line, 0.0F});
@@ -71,7 +64,8 @@ TEST(Pillar, NeitherThrowsBodiesNorLetsThemIn) {
                 World world = square_world(1000.0F);
                 world.arena = make_arena({{{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}}, obstacle.line});
                 Vec2 const from_mm{random.uniform(200.0F, 330.0F), random.uniform(350.0F, 650.0F)};
-                std::uint32_t const body = add(world, shape, from_mm, random.uniform(-kPi, kPi));
+                std::uint32_t const body =
+                    add_body(world, shape, from_mm, random.uniform(-kPi, kPi), {.restitution = 0.0F});
                 Vec2 const to_mm = kMiddle + Vec2{random.uniform(-90.0F, 90.0F), random.uniform(-90.0F, 90.0F)};
                 Vec2 const way_mm = to_mm - from_mm;
                 world.bodies.velocity_mm_s[body] = (60.0F / length(way_mm)) * way_mm;

@@ -9,9 +9,20 @@
 #include "physics/body_mass.hpp"
 #include "physics/hulls.hpp"
 #include "physics/physics_engine.hpp"
+#include "support/small_world.hpp"
 #include "world/world.hpp"
 
 namespace pogosim::testing {
+
+/// Adds a robot of any shape.
+inline std::uint32_t add_body(World& world, Shape const& shape, Vec2 place_mm, float heading_rad,
+                              BodySpec const& body = {}) {
+    ObjectSpec spec;
+    spec.shape = shape;
+    spec.robot.emplace();
+    spec.body = body;
+    return add_robot(world, place_mm, heading_rad, spec);
+}
 
 /// The parts of a shape at a pose.
 inline std::vector<Hull> hulls_at(Shape const& shape, Vec2 place_mm, float heading_rad) {
@@ -64,6 +75,19 @@ inline float deepest_overlap_mm(World const& world) {
                               hull.radius_mm + corner.x - box.max.x, hull.radius_mm + corner.y - box.max.y});
             }
         }
+    }
+    return deepest_mm;
+}
+
+/// The deepest overlap while motors drive all robots this way, in every second step.
+inline float deepest_when_all_push_mm(World& world, PhysicsEngine& engine, Vec2 velocity_mm_s, int steps) {
+    float deepest_mm = 0.0F;
+    for (int step = 0; step < steps; ++step) {
+        for (VelocityCommand& command : world.robots.command) {
+            command = {.velocity_mm_s = velocity_mm_s, .pending = step % 2 == 0};
+        }
+        engine.advance(world);
+        deepest_mm = std::max(deepest_mm, deepest_overlap_mm(world));
     }
     return deepest_mm;
 }
