@@ -207,7 +207,8 @@ float separation_mm(Hull const& hull, WallSide const& side) {
 
 /// The touch of a wall's corner with the inside of a hull's side or with one of its corners.
 Manifold touches_with_corner(Hull const& hull, WallSide const& side, float reach_mm) {
-    Hull corner{.count = 1};
+    Hull corner;
+    corner.count = 1;
     corner.corner_mm[0] = side.from_mm;
     Manifold const touches = touches_of(hull, corner, reach_mm);
     return pushes_from_corner(side, touches.normal) ? touches : Manifold{};
