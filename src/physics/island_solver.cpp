@@ -41,10 +41,14 @@ constexpr std::uint32_t kLargeIsland = 32;
 constexpr float kUnlimited = std::numeric_limits<float>::max();
 constexpr std::uint32_t kMostBlocks = 64;
 
-float push_rate(float h_s) {
+constexpr float push_rate(float h_s) {
     float const omega = 2.0F * std::numbers::pi_v<float> * kStiffness / h_s;
     return omega / (2.0F * kDampingRatio + h_s * omega);
 }
+
+// Nothing takes back the speed at which overlaps within the tolerance are pushed apart, so short time steps must not
+// make it high: it is at most that of steps of 10 ms.
+constexpr float kGentleRate = push_rate(0.01F / kSubsteps);
 
 }  // namespace
 
@@ -171,7 +175,9 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
         Four const bouncing_mm_s =
             smaller(-places.restitution * speed_mm_s, larger(-speed_mm_s, all_four(kMostBounceMmS)));
         Four const meeting_mm_s = -gap_mm * times.per_h;
-        Four const pushed_mm_s = smaller(-times.push_rate * gap_mm, all_four(kFastestPushMmS));
+        Four const push_rate = gap_mm < -kContactToleranceMm ? all_four(times.push_rate)
+                                                             : all_four(std::min(times.push_rate, kGentleRate));
+        Four const pushed_mm_s = smaller(-push_rate * gap_mm, all_four(kFastestPushMmS));
         FourInts const is_elastic = places.restitution > 0.0F;
         FourInts const is_free = gap_mm > 0.0F;
         FourInts const bounces =

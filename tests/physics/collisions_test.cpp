@@ -202,6 +202,22 @@ TEST_P(Collisions, InelasticOneLeavesNoSpeedOfSeparation) {
     }
 }
 
+/// Overlaps of disks within the tolerance are pushed apart, as slowly in short steps as in long ones.
+TEST_P(Collisions, InelasticDisksPartNoFasterInShortSteps) {
+    for (double const time_step_s : {0.0005, 0.001, 0.002, 0.005, 0.01, 0.016}) {
+        for (int i = 0; i < 40; ++i) {
+            World world = square_world(2000.0F);
+            world.time_step_s = time_step_s;
+            Material const soft{.restitution = 0.0F};
+            add(world, disk(26.5F), kMiddle, {}, soft);
+            add(world, disk(26.5F), kMiddle - Vec2{60.0F + 0.05F * static_cast<float>(i), 0.0F}, {100.0F, 0.0F}, soft);
+            run(world, 0.5);
+            EXPECT_NEAR(world.bodies.velocity_mm_s[0].x, 50.0F, 2.2F) << time_step_s << ", " << i;
+            EXPECT_NEAR(world.bodies.velocity_mm_s[1].x, 50.0F, 2.2F) << time_step_s << ", " << i;
+        }
+    }
+}
+
 TEST_P(Collisions, FastRobotDoesNotJumpASmallBody) {
     // 25 mm per sub-step, and the other one is in the middle between two places of the robot.
     World world = square_world(2000.0F);
