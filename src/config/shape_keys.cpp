@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "config/read_list.hpp"
-#include "geometry/gap_between.hpp"
+#include "geometry/hull.hpp"
 #include "geometry/outline_survey.hpp"
 
 namespace pogosim {
@@ -30,7 +30,6 @@ constexpr std::string_view kParts =
     "a list of maps, such as [{geometry: disk, radius: 20}, {geometry: rectangle, body_width: 60, body_height: 10, "
     "x: 30}]";
 constexpr std::size_t kMostParts = 16;
-constexpr std::size_t kMostCorners = 8;
 constexpr float kShortestSideMm = 1e-3F;
 constexpr float kTouchingMm = 0.1F;  // parts of a compound hold together up to this gap
 
@@ -222,7 +221,7 @@ std::vector<float> gaps_to_the_first(std::vector<RoundedPolygon> const& parts) {
         next.pop_back();
         for (std::size_t to = 0; to < parts.size(); ++to) {
             if (gaps[to] > kTouchingMm) {
-                gaps[to] = std::min(gaps[to], gap_between(parts[from], parts[to]));
+                gaps[to] = std::min(gaps[to], gap_between_mm(hull_of(parts[from]), hull_of(parts[to])));
                 if (gaps[to] <= kTouchingMm) {
                     next.push_back(to);
                 }

@@ -20,11 +20,11 @@
 #include "physics/coinciding_centres.hpp"
 #include "physics/continuous_collision.hpp"
 #include "physics/damping.hpp"
-#include "physics/disk_contacts.hpp"
 #include "physics/island_solver.hpp"
 #include "physics/islands.hpp"
 #include "physics/membrane_sides.hpp"
 #include "physics/membrane_steps.hpp"
+#include "physics/near_contacts.hpp"
 #include "physics/neighbour_list.hpp"
 #include "physics/physics_engine.hpp"
 #include "physics/position_correction.hpp"
@@ -304,7 +304,7 @@ private:
     PositionCorrection position_correction_;
     WallNeighbourList wall_neighbour_list_;
     NeighbourList neighbour_list_;
-    DiskContacts contacts_;
+    NearContacts contacts_;
     Damping damping_;
     Assemblies assemblies_;
     Islands islands_;

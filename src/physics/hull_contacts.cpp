@@ -21,7 +21,7 @@ void HullContacts::clear() {
     hulls_.clear();
 }
 
-std::uint32_t HullContacts::hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body,
+std::uint32_t HullContacts::hull_of(World const& world, NearContacts const& contacts, std::uint32_t body,
                                     std::uint32_t part, std::uint32_t mover, std::span<Mover const> movers) {
     auto const next = static_cast<std::uint32_t>(hulls_.size());
     if (mover == kStill) {
@@ -48,7 +48,7 @@ std::uint32_t HullContacts::hull_of(World const& world, DiskContacts const& cont
     return next + part;
 }
 
-void HullContacts::add(World const& world, DiskContacts const& contacts, std::uint32_t index, std::uint32_t a,
+void HullContacts::add(World const& world, NearContacts const& contacts, std::uint32_t index, std::uint32_t a,
                        std::uint32_t b, std::span<Mover const> movers) {
     NearContact const& near = contacts.near()[index];
     TouchingParts const& parts = contacts.parts(index);
@@ -69,7 +69,7 @@ void HullContacts::add(World const& world, DiskContacts const& contacts, std::ui
     contacts_.push_back(contact);
 }
 
-Manifold HullContacts::touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const {
+Manifold HullContacts::touches(NearContacts const& contacts, Contact const& contact, float reach_mm) const {
     Placed const& a = hulls_[contact.hull_a];
     if (contact.hull_b == kNone) {
         return touches_with(a.now, contacts.wall_side(contact.index), reach_mm);
@@ -81,7 +81,7 @@ Manifold HullContacts::touches(DiskContacts const& contacts, Contact const& cont
     return touches_of(a.now, placed(b, -contact.seam_mm, {1.0F, 0.0F}), reach_mm);
 }
 
-bool HullContacts::measure(DiskContacts const& contacts, std::span<Mover const> movers, Times const& times) {
+bool HullContacts::measure(NearContacts const& contacts, std::span<Mover const> movers, Times const& times) {
     for (Placed& hull : hulls_) {
         if (hull.mover != kStill) {
             hull.place_mm = movers[hull.mover].position_mm;
@@ -128,7 +128,7 @@ bool HullContacts::measure(Contact& contact, Manifold const& touches, std::span<
     return overlaps;
 }
 
-void HullContacts::push_as_before(DiskContacts& contacts, std::span<Mover> movers) {
+void HullContacts::push_as_before(NearContacts& contacts, std::span<Mover> movers) {
     for (Contact& contact : contacts_) {
         HullImpulse const& before = contacts.hull_impulse()[contact.index - contacts.first_hull()];
         for (Point& point : std::span(contact.points).first(contact.count)) {
@@ -145,7 +145,7 @@ void HullContacts::push_as_before(DiskContacts& contacts, std::span<Mover> mover
     }
 }
 
-void HullContacts::keep_impulses(DiskContacts& contacts) const {
+void HullContacts::keep_impulses(NearContacts& contacts) const {
     for (Contact const& contact : contacts_) {
         HullImpulse& kept = contacts.hull_impulse()[contact.index - contacts.first_hull()];
         kept = {};

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "physics/disk_contacts.hpp"
-#include "physics/hull.hpp"
+#include "physics/manifold.hpp"
 #include "physics/mover.hpp"
+#include "physics/near_contacts.hpp"
 #include "physics/substep.hpp"
 #include "world/world.hpp"
 
@@ -22,16 +22,16 @@ public:
 
     bool empty() const { return contacts_.empty(); }
 
-    /// Adds a contact of DiskContacts. `a`, `b`: its bodies in the movers; `b` is kStill if it is fixed.
-    void add(World const& world, DiskContacts const& contacts, std::uint32_t index, std::uint32_t a, std::uint32_t b,
+    /// Adds a contact of NearContacts. `a`, `b`: its bodies in the movers; `b` is kStill if it is fixed.
+    void add(World const& world, NearContacts const& contacts, std::uint32_t index, std::uint32_t a, std::uint32_t b,
              std::span<Mover const> movers);
 
     /// Finds the touches at the start of a sub-step, and the speeds that they demand. Returns whether any overlap.
-    bool measure(DiskContacts const& contacts, std::span<Mover const> movers, Times const& times);
+    bool measure(NearContacts const& contacts, std::span<Mover const> movers, Times const& times);
 
     /// Applies the impulses of the last step that motors drove, where the same features touch.
-    void push_as_before(DiskContacts& contacts, std::span<Mover> movers);
-    void keep_impulses(DiskContacts& contacts) const;
+    void push_as_before(NearContacts& contacts, std::span<Mover> movers);
+    void keep_impulses(NearContacts& contacts) const;
 
     /// Solves all once. `pushes`: overlaps are pushed apart. Returns the largest change of a speed of separation, mm/s.
     float solve(std::span<Mover> movers, bool backwards, bool pushes);
@@ -53,7 +53,7 @@ private:
     struct Contact {
         std::uint32_t a;      // in the movers
         std::uint32_t b;      // the same; kStill
-        std::uint32_t index;  // in DiskContacts::near()
+        std::uint32_t index;  // in NearContacts::near()
         std::uint32_t hull_a;
         std::uint32_t hull_b;  // in hulls_; kNone: a wall
         float friction;
@@ -72,9 +72,9 @@ private:
         Vec2 place_mm;        // of its origin
     };
 
-    std::uint32_t hull_of(World const& world, DiskContacts const& contacts, std::uint32_t body, std::uint32_t part,
+    std::uint32_t hull_of(World const& world, NearContacts const& contacts, std::uint32_t body, std::uint32_t part,
                           std::uint32_t mover, std::span<Mover const> movers);
-    Manifold touches(DiskContacts const& contacts, Contact const& contact, float reach_mm) const;
+    Manifold touches(NearContacts const& contacts, Contact const& contact, float reach_mm) const;
     bool measure(Contact& contact, Manifold const& touches, std::span<Mover const> movers, Times const& times) const;
     static float solve(Contact const& contact, Point& point, std::span<Mover> movers, bool pushes);
 

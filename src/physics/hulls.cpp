@@ -1,7 +1,6 @@
 #include "physics/hulls.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -91,34 +90,6 @@ float Hulls::fraction_to_touch(World const& world, std::uint32_t body, std::uint
         gone_mm += free_mm;
     }
     return 1.0F;
-}
-
-Hull hull_of(RoundedPolygon const& part) {
-    assert(!part.corners_mm.empty() && part.corners_mm.size() <= kMostCorners);
-    Hull hull;
-    hull.radius_mm = part.radius_mm;
-    Polygon corners = part.corners_mm;
-    bool const has_core = corners.size() > 2;
-    if (!has_core) {  // one side along the core, and back on the other side, with a side across at each end
-        Vec2 const from = corners.front();
-        Vec2 const to = corners.back();
-        corners = {from, to, to, from};
-    }
-    hull.count = static_cast<std::uint32_t>(corners.size());
-    for (std::uint32_t k = 0; k < hull.count; ++k) {
-        Vec2 const way_mm = corners[k + 1 < hull.count ? k + 1 : 0] - corners[k];
-        // The square of a tiny length would be 0.
-        float const squared_mm2 = squared_length(way_mm);
-        float const length_mm = squared_mm2 > 0.0F ? std::sqrt(squared_mm2) : exact::hypot(way_mm.x, way_mm.y);
-        Vec2 const along = length_mm > 0.0F ? (1.0F / length_mm) * way_mm : Vec2{1.0F, 0.0F};
-        hull.corner_mm[k] = corners[k];
-        hull.outwards[k] = {along.y, -along.x};
-    }
-    for (std::uint32_t k = 1; k < hull.count && !has_core; ++k) {
-        Vec2 const before = hull.outwards[k - 1];
-        hull.outwards[k] = {-before.y, before.x};
-    }
-    return hull;
 }
 
 }  // namespace pogosim

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "physics/hull.hpp"
+#include "geometry/hull.hpp"
+#include "physics/wall_neighbour_list.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -55,7 +56,5 @@ private:
     std::vector<Hull> hulls_;
     std::vector<Parts> parts_;  // of each body. Empty if all are disks
 };
-
-Hull hull_of(RoundedPolygon const& part);
 
 }  // namespace pogosim

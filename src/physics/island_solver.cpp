@@ -58,7 +58,7 @@ IslandSolver::IslandSolver(World const& world)
       most_motion_mm_(most_motion_mm(world, std::numeric_limits<float>::max())),
       mover_(world.bodies.size()) {}
 
-inline std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body) {
+inline std::uint32_t IslandSolver::mover_of(World const& world, NearContacts const& contacts, std::uint32_t body) {
     std::uint32_t const known = mover_[body];
     if (known < movers_.size() && movers_[known].body == body) {
         return known;
@@ -78,7 +78,7 @@ inline std::uint32_t IslandSolver::mover_of(World const& world, DiskContacts con
     return mover;
 }
 
-void IslandSolver::gather(World const& world, Assemblies& assemblies, DiskContacts const& contacts,
+void IslandSolver::gather(World const& world, Assemblies& assemblies, NearContacts const& contacts,
                           Islands const& islands, Island const& island) {
     block_shift_ = 0;
     while (island.contact_count > kMostBlocks << block_shift_) {
@@ -162,7 +162,7 @@ void IslandSolver::mark_overlaps() {
 
 /// Measures the contacts at the start of a sub-step, and sets the speeds that they demand: bodies that meet within it
 /// bounce at once, others may close their gap, and those that overlap are pushed apart.
-IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts const& contacts, Times const& times) {
+IslandSolver::Survey IslandSolver::measure(World const& world, NearContacts const& contacts, Times const& times) {
     Four least_gap_mm = all_four(kUnlimited);
     FourInts meets = {};
     dirty_ = 0;
@@ -207,7 +207,7 @@ IslandSolver::Survey IslandSolver::measure(World const& world, DiskContacts cons
 }
 
 /// Places of up to four contacts, the first of which has the index `first`. Unused lanes have a large gap.
-inline IslandSolver::Places IslandSolver::find_places(World const& world, DiskContacts const& contacts,
+inline IslandSolver::Places IslandSolver::find_places(World const& world, NearContacts const& contacts,
                                                       std::span<Contact const> four, std::uint32_t first) const {
     std::array<Four, kLanes> motion;
     Places places = {};
@@ -479,7 +479,7 @@ int IslandSolver::substeps_of(float dt_s) const {
 }
 
 /// Returns whether some bodies overlap in the end.
-bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool is_driven) {
+bool IslandSolver::solve_soft(World const& world, NearContacts& contacts, bool is_driven) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     int const substeps = substeps_of(dt_s);
     // Springs of links may throw as far as they can.
@@ -528,7 +528,7 @@ bool IslandSolver::solve_soft(World const& world, DiskContacts& contacts, bool i
     return overlaps;
 }
 
-bool IslandSolver::solve(World& world, Assemblies& assemblies, DiskContacts& contacts, Islands const& islands,
+bool IslandSolver::solve(World& world, Assemblies& assemblies, NearContacts& contacts, Islands const& islands,
                          Island const& island, bool is_driven) {
     gather(world, assemblies, contacts, islands, island);
     if (!membranes_.empty() || !hulls_.empty() || !links_.empty()) {

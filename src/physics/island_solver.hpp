@@ -16,11 +16,11 @@
 
 #include "base/four.hpp"
 #include "physics/assemblies.hpp"
-#include "physics/disk_contacts.hpp"
 #include "physics/hull_contacts.hpp"
 #include "physics/island_links.hpp"
 #include "physics/islands.hpp"
 #include "physics/mover.hpp"
+#include "physics/near_contacts.hpp"
 #include "physics/soft_membranes.hpp"
 #include "physics/substep.hpp"
 #include "world/world.hpp"
@@ -33,14 +33,14 @@ public:
 
     /// Moves the bodies of an island by one time step: poses (except heading_dir) and velocities. Returns whether any
     /// of them overlap at the end. `is_driven`: motors have just changed velocities.
-    bool solve(World& world, Assemblies& assemblies, DiskContacts& contacts, Islands const& islands,
+    bool solve(World& world, Assemblies& assemblies, NearContacts& contacts, Islands const& islands,
                Island const& island, bool is_driven);
 
 private:
     struct Contact {
         std::uint32_t a;     // into movers_
         std::uint32_t b;     // the same; kStill: something fixed
-        std::uint32_t near;  // into DiskContacts::near()
+        std::uint32_t near;  // into NearContacts::near()
         ContactLaw law;
         Vec2 seam_mm;   // periodic world: to be added to the vector from `b` to `a`
         Vec2 normal{};  // unit vector from `b` to `a`
@@ -68,7 +68,7 @@ private:
         Four restitution;
     };
 
-    bool solve_soft(World const& world, DiskContacts& contacts, bool is_driven);
+    bool solve_soft(World const& world, NearContacts& contacts, bool is_driven);
     int substeps_of(float dt_s) const;
     void solve_velocities_softly(float h_s, bool pushes);
     /// Disks alone may turn as fast as they like.
@@ -76,12 +76,12 @@ private:
     float fastest_mm_s() const;
     float fastest_turn_rad_s() const;
     bool limit_speeds(float most_mm_s, float most_rad_s);
-    std::uint32_t mover_of(World const& world, DiskContacts const& contacts, std::uint32_t body);
-    void gather(World const& world, Assemblies& assemblies, DiskContacts const& contacts, Islands const& islands,
+    std::uint32_t mover_of(World const& world, NearContacts const& contacts, std::uint32_t body);
+    void gather(World const& world, Assemblies& assemblies, NearContacts const& contacts, Islands const& islands,
                 Island const& island);
     void scatter(World& world);
-    Survey measure(World const& world, DiskContacts const& contacts, Times const& times);
-    Places find_places(World const& world, DiskContacts const& contacts, std::span<Contact const> four,
+    Survey measure(World const& world, NearContacts const& contacts, Times const& times);
+    Places find_places(World const& world, NearContacts const& contacts, std::span<Contact const> four,
                        std::uint32_t first) const;
     int substeps_to_impact(Times const& times) const;
     void move(float time_s);

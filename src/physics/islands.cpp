@@ -29,7 +29,7 @@ bool is_moving(World const& world, Assembly const& assembly) {
 }  // namespace
 
 /// Branch-free, since whether bodies are close is hard to predict.
-void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
+void Islands::find_pairs(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange pairs,
                          std::vector<Close>& found) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     found.resize(pairs.last - pairs.first);
@@ -61,7 +61,7 @@ void Islands::find_pairs(World const& world, DiskContacts const& contacts, Reach
     found.resize(count);
 }
 
-void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,
+void Islands::find_fixed(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange fixed,
                          std::vector<Close>& found) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     for (std::uint32_t i = fixed.first; i < fixed.last; ++i) {
@@ -77,7 +77,7 @@ void Islands::find_fixed(World const& world, DiskContacts const& contacts, Reach
     }
 }
 
-void Islands::find_hulls(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange hulls,
+void Islands::find_hulls(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange hulls,
                          std::vector<Close>& found) {
     auto const dt_s = static_cast<float>(world.time_step_s);
     Bodies const& bodies = world.bodies;
@@ -98,7 +98,7 @@ void Islands::find_hulls(World const& world, DiskContacts const& contacts, Reach
 }
 
 /// Lists the close contacts, and joins the trees of their bodies.
-void Islands::unite(DiskContacts const& contacts) {
+void Islands::unite(NearContacts const& contacts) {
     for (std::vector<Close> const& found : close_) {
         for (Close const& close : found) {
             contacts_.push_back({.contact = close.contact, .next = kNone});
@@ -112,7 +112,7 @@ void Islands::unite(DiskContacts const& contacts) {
 
 /// Appends each contact to the list of its island. Branch-free, since which contact begins a new island is hard to
 /// predict.
-void Islands::link(DiskContacts const& contacts) {
+void Islands::link(NearContacts const& contacts) {
     islands_.reserve(contacts_.capacity() + 1);  // so that it grows as rarely
     islands_.assign(contacts_.size() + 1, {});
     std::uint32_t count = 1;
@@ -152,7 +152,7 @@ void Islands::link_assemblies(World const& world, Assemblies const& assemblies, 
     }
 }
 
-void Islands::find(World const& world, Assemblies const& assemblies, DiskContacts const& contacts, Reach const& reach,
+void Islands::find(World const& world, Assemblies const& assemblies, NearContacts const& contacts, Reach const& reach,
                    WorkerPool& workers) {
     parent_ = assemblies.first_bodies();
     island_.assign(parent_.size(), kNoIsland);

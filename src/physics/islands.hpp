@@ -9,7 +9,7 @@
 
 #include "base/worker_pool.hpp"
 #include "physics/assemblies.hpp"
-#include "physics/disk_contacts.hpp"
+#include "physics/near_contacts.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -24,7 +24,7 @@ struct Island {
 };
 
 struct IslandContact {
-    std::uint32_t contact;  // into DiskContacts::near()
+    std::uint32_t contact;  // into NearContacts::near()
     std::uint32_t next;     // into Islands::contacts(); kNone: the last one
 };
 
@@ -36,11 +36,11 @@ struct Reach {
 class Islands {
 public:
     /// Finds the islands for the present positions and velocities.
-    void find(World const& world, Assemblies const& assemblies, DiskContacts const& contacts, Reach const& reach,
+    void find(World const& world, Assemblies const& assemblies, NearContacts const& contacts, Reach const& reach,
               WorkerPool& workers);
 
     /// Sorted by their first contacts; islands that are a single assembly come last. The contacts of each are in the
-    /// order of DiskContacts::near().
+    /// order of NearContacts::near().
     std::span<Island const> islands() const { return std::span(islands_).subspan(1); }
     std::span<IslandContact const> contacts() const { return contacts_; }
 
@@ -55,24 +55,24 @@ private:
 
     /// A contact whose gap is less than the reach.
     struct Close {
-        std::uint32_t contact;  // into DiskContacts::near()
+        std::uint32_t contact;  // into NearContacts::near()
         bool meets;             // they touch within this step
     };
 
-    static void find_pairs(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange pairs,
+    static void find_pairs(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange pairs,
                            std::vector<Close>& found);
-    static void find_fixed(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange fixed,
+    static void find_fixed(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange fixed,
                            std::vector<Close>& found);
-    static void find_hulls(World const& world, DiskContacts const& contacts, Reach const& reach, WorkRange hulls,
+    static void find_hulls(World const& world, NearContacts const& contacts, Reach const& reach, WorkRange hulls,
                            std::vector<Close>& found);
-    void unite(DiskContacts const& contacts);
-    void link(DiskContacts const& contacts);
+    void unite(NearContacts const& contacts);
+    void link(NearContacts const& contacts);
     void link_assemblies(World const& world, Assemblies const& assemblies, Reach const& reach);
 
     std::vector<std::uint32_t> parent_;      // for each body, in the disjoint-set forest; after the search, its root
     std::vector<std::uint32_t> island_;      // for each root, into islands_; kNoIsland: none
     std::vector<std::vector<Close>> close_;  // for each range of contacts, during the search
-    std::vector<IslandContact> contacts_;    // in the order of DiskContacts::near()
+    std::vector<IslandContact> contacts_;    // in the order of NearContacts::near()
     std::vector<std::uint8_t> meets_;        // for each link: its bodies touch within this step
     std::vector<std::uint32_t> next_assembly_;
     std::vector<Island> islands_{{}};  // behind kNoIsland, which is empty and never active

@@ -1,5 +1,6 @@
 // Rectangles and triangles that move: where they touch, and what crowds of them must keep.
 #include "physics/hulls.hpp"
+#include "physics/manifold.hpp"
 
 #include <gtest/gtest.h>
 

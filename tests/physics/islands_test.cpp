@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "physics/disk_contacts.hpp"
+#include "physics/near_contacts.hpp"
 #include "physics/neighbour_list.hpp"
 #include "physics/wall_neighbour_list.hpp"
 #include "support/small_world.hpp"
@@ -57,7 +57,7 @@ struct Finder {
     PositionCorrection places;
     NeighbourList pairs;
     WallNeighbourList wall_neighbour_list;
-    DiskContacts contacts;
+    NearContacts contacts;
     Assemblies assemblies;
     Islands islands;
 };
@@ -209,12 +209,12 @@ TEST(Islands, HaveAMembraneThatFliesAlone) {
     EXPECT_TRUE(finder.islands.has_contact(membrane.body + 3));
 }
 
-TEST(DiskContacts, KeepTheirImpulsesWhenTheyAreListedAnew) {
+TEST(NearContacts, KeepTheirImpulsesWhenTheyAreListedAnew) {
     World world = row_of_three(1.0F, 1.0F, {0.0F, 0.0F, 0.0F});
     testing::add_robot(world, {27.0F, 500.0F});   // at the wall on the left
     testing::add_robot(world, {100.0F, 100.0F});  // alone
     Finder finder(world);
-    DiskContacts& contacts = finder.contacts;
+    NearContacts& contacts = finder.contacts;
     auto const impulse_of = [&](std::uint32_t a) {
         for (std::size_t i = 0; i < contacts.near().size(); ++i) {
             if (contacts.near()[i].a == a) {

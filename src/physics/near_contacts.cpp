@@ -1,4 +1,4 @@
-#include "physics/disk_contacts.hpp"
+#include "physics/near_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ ContactLaw law_between(Disk const& a, Disk const& b) {
 
 }  // namespace
 
-DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
+NearContacts::NearContacts(World const& world, WallSpec const& walls)
     : membranes_(world),
       hulls_(world),
       wall_{.radius_mm = 0.0F,
@@ -64,7 +64,7 @@ DiskContacts::DiskContacts(World const& world, WallSpec const& walls)
 }
 
 /// The bounding disk of a polygon may be much larger than the polygon.
-void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
+void NearContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32_t fixed, float skin_mm) {
     float const reach_mm = disks_[disk].radius_mm + skin_mm;
     for (std::uint32_t part = 0; part < hulls_.part_count(fixed); ++part) {
         if (!hulls_.is_one(fixed) ||
@@ -75,7 +75,7 @@ void DiskContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32
     }
 }
 
-void DiskContacts::build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
+void NearContacts::build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
                          WallNeighbourList const& walls) {
     walls_ = walls.sides();
     keep_impulses();
@@ -110,7 +110,7 @@ void DiskContacts::build(World const& world, Assemblies const& assemblies, Neigh
     give_impulses();
 }
 
-void DiskContacts::add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls) {
+void NearContacts::add_hulls(Assemblies const& assemblies, NeighbourList const& pairs, WallNeighbourList const& walls) {
     with_fixed_.clear();
     parts_with_fixed_.clear();
     for (auto const [a, b] : pairs.pairs()) {
@@ -139,7 +139,7 @@ void DiskContacts::add_hulls(Assemblies const& assemblies, NeighbourList const& 
 }
 
 /// Symmetric in the two bodies, with no impulse.
-DiskContacts::Pushing DiskContacts::named(std::uint32_t contact) const {
+NearContacts::Pushing NearContacts::named(std::uint32_t contact) const {
     auto const [a, b, law] = near_[contact];
     constexpr std::uint64_t walls = std::uint64_t{1} << 63U;
     if (is_wall(contact)) {
@@ -160,7 +160,7 @@ DiskContacts::Pushing DiskContacts::named(std::uint32_t contact) const {
             .of_hull = {}};
 }
 
-void DiskContacts::keep_impulses() {
+void NearContacts::keep_impulses() {
     pushing_.clear();
     pushes_.assign(disks_.size(), 0);
     auto const keep = [this](std::uint32_t contact, float impulse, HullImpulse const& of_hull) {
@@ -186,7 +186,7 @@ void DiskContacts::keep_impulses() {
     std::ranges::sort(pushing_, std::less{}, &Pushing::name);
 }
 
-void DiskContacts::give_impulses() {
+void NearContacts::give_impulses() {
     driven_impulse_.assign(first_hull_, 0.0F);
     hull_impulse_.assign(near_.size() - first_hull_, {});
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
@@ -205,7 +205,7 @@ void DiskContacts::give_impulses() {
     }
 }
 
-std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const {
+std::optional<Gap> NearContacts::gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const {
     std::uint32_t const fixed = near_[contact].b;
     if (contact >= first_wall_) {
         return gap_to((*walls_)[fixed], point_mm);
@@ -216,7 +216,7 @@ std::optional<Gap> DiskContacts::gap_to_fixed(World const& world, std::uint32_t 
     return gap_to_centre(minimum_image(world, world.bodies.position_mm[fixed], point_mm));
 }
 
-float DiskContacts::gap_of_hull_mm(World const& world, std::uint32_t contact, float beyond_mm) const {
+float NearContacts::gap_of_hull_mm(World const& world, std::uint32_t contact, float beyond_mm) const {
     auto const [a, b, law] = near_[contact];
     auto const [part_a, part_b] = parts(contact);
     Vec2 const place_mm = world.bodies.position_mm[a];

@@ -1,4 +1,4 @@
-#include "physics/hull.hpp"
+#include "physics/manifold.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -13,41 +13,6 @@ namespace {
 constexpr float kPreferenceMm = 0.01F;
 // Touches that lie closer together than this are one.
 constexpr float kSamePlaceMm = 0.01F;
-
-/// The side of a hull from which another one is furthest away. Without sides: minus infinity.
-struct Furthest {
-    float distance_mm = -std::numeric_limits<float>::max();  // between the polygons, without the rounding
-    std::uint32_t side = 0;
-};
-
-/// A straight line with ends.
-struct Line {
-    Vec2 from_mm;
-    Vec2 to_mm;
-};
-
-Line side_of(Hull const& hull, std::uint32_t side) {
-    return {hull.corner_mm[side], hull.next_corner_mm(side)};
-}
-
-float lowest(Hull const& hull, Vec2 from_mm, Vec2 up) {
-    float lowest_mm = std::numeric_limits<float>::max();
-    for (std::uint32_t k = 0; k < hull.count; ++k) {
-        lowest_mm = std::min(lowest_mm, dot(hull.corner_mm[k] - from_mm, up));
-    }
-    return lowest_mm;
-}
-
-Furthest furthest_from_side(Hull const& of, Hull const& other) {
-    Furthest furthest;
-    for (std::uint32_t i = 0; i < of.count && of.count > 1; ++i) {
-        float const distance_mm = lowest(other, of.corner_mm[i], of.outwards[i]);
-        if (distance_mm > furthest.distance_mm) {
-            furthest = {distance_mm, i};
-        }
-    }
-    return furthest;
-}
 
 /// The side of a hull that faces against `normal` most.
 std::uint32_t side_against(Hull const& hull, Vec2 normal) {
@@ -133,25 +98,6 @@ Closest closest_ends(Line const& reference, Line const& incident) {
     return closest;
 }
 
-float distance_mm2(Line const& line, Vec2 point_mm) {
-    Vec2 const way_mm = line.to_mm - line.from_mm;
-    float const length_mm2 = squared_length(way_mm);
-    float const share =
-        length_mm2 > 0.0F ? std::clamp(dot(point_mm - line.from_mm, way_mm) / length_mm2, 0.0F, 1.0F) : 0.0F;
-    return squared_length(point_mm - line.from_mm - share * way_mm);
-}
-
-/// From the corners of a hull to the nearest side of another one.
-float from_corners_mm2(Hull const& corners, Hull const& sides) {
-    float nearest_mm2 = std::numeric_limits<float>::max();
-    for (std::uint32_t i = 0; i < corners.count; ++i) {
-        for (std::uint32_t k = 0; k < sides.count; ++k) {
-            nearest_mm2 = std::min(nearest_mm2, distance_mm2(side_of(sides, k), corners.corner_mm[i]));
-        }
-    }
-    return nearest_mm2;
-}
-
 /// The touch of two corners; none if an end of one side is closer to the middle of the other one, or above its end.
 std::optional<Manifold> of_corners(Sides sides, float reach_mm) {
     Closest const closest = closest_ends(sides.reference, sides.incident);
@@ -216,19 +162,6 @@ Manifold touches_with_corner(Hull const& hull, WallSide const& side, float reach
 
 }  // namespace
 
-Hull placed(Hull const& hull, Vec2 place_mm, Vec2 ahead) {
-    Hull result;
-    result.count = hull.count;
-    result.radius_mm = hull.radius_mm;
-    result.centre_mm = place_mm + rotate(hull.centre_mm, ahead);
-    result.reach_mm = hull.reach_mm;
-    for (std::uint32_t k = 0; k < hull.count; ++k) {
-        result.corner_mm[k] = place_mm + rotate(hull.corner_mm[k], ahead);
-        result.outwards[k] = rotate(hull.outwards[k], ahead);
-    }
-    return result;
-}
-
 Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
     assert(a.count > 1 || b.count > 1);
     Furthest const from_a = furthest_from_side(a, b);
@@ -257,7 +190,7 @@ Manifold touches_of(Hull const& a, Hull const& b, float reach_mm) {
 
 Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm) {
     Vec2 const to_mm = side.from_mm + side.length_mm * side.along;
-    float const above_edge_mm = lowest(hull, side.from_mm, side.normal);
+    float const above_edge_mm = lowest_mm(hull, side.from_mm, side.normal);
     // Where a side of the hull separates them better than the edge, the hull is in front of an end of the edge, or
     // beside it: it may reach far behind the line of a short edge without touching it.
     bool const is_beside = separation_mm(hull, side) > above_edge_mm + kPreferenceMm;
@@ -276,14 +209,6 @@ Manifold touches_with(Hull const& hull, WallSide const& side, float reach_mm) {
         }
     }
     return side.has_corner ? touches_with_corner(hull, side, reach_mm) : Manifold{};
-}
-
-float gap_between_mm(Hull const& a, Hull const& b) {
-    assert(a.count > 1 || b.count > 1);
-    float const deepest_mm = std::max(furthest_from_side(a, b).distance_mm, furthest_from_side(b, a).distance_mm);
-    float const apart_mm =
-        deepest_mm > 0.0F ? std::sqrt(std::min(from_corners_mm2(a, b), from_corners_mm2(b, a))) : deepest_mm;
-    return apart_mm - a.radius_mm - b.radius_mm;
 }
 
 }  // namespace pogosim

@@ -48,7 +48,7 @@ struct ContactLaw {
 /// A movable body and the thing that it may touch.
 struct NearContact {
     std::uint32_t a;
-    std::uint32_t b;  // another movable body, a fixed one, or an edge of a wall: see DiskContacts
+    std::uint32_t b;  // another movable body, a fixed one, or an edge of a wall: see NearContacts
     ContactLaw law;
 };
 
@@ -67,9 +67,9 @@ inline Gap gap_to_centre(Vec2 way) {
     return {distance_mm, distance_mm > 0.0F ? (1.0F / distance_mm) * way : Vec2{1.0F, 0.0F}};
 }
 
-class DiskContacts {
+class NearContacts {
 public:
-    DiskContacts(World const& world, WallSpec const& walls);
+    NearContacts(World const& world, WallSpec const& walls);
 
     /// Builds the contacts from the neighbour lists.
     void build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
