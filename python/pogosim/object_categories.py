@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from pogosim.arguments import number
 from pogosim.batch.paths import set_in_dict
 from pogosim.run_columns import is_one_run
-from pogosim.scene import RAYS, SPOTS, TALKERS, entries, read_periodic, type_of
+from pogosim.scene import RAYS, SPOTS, TALKERS, bodies_of, entries, read_kinds, read_periodic, type_of
 from pogosim.several_files import configuration_of
 
 IDS_ON_AIR = 65536
@@ -64,7 +65,7 @@ def changed(configuration: dict[str, Any], settings: dict[str, Any]) -> dict[str
 
 def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: Mapping[str, Any]) -> Any:
     """Return the categories of the objects of rows, of one configuration: an array, or one name for all."""
-    bodies = [(name, own) for name, own in entries(configuration) if type_of(own) not in SPOTS + RAYS]
+    bodies = bodies_of(configuration)
     recorded = recorded_categories(configuration) or {name for name, _ in bodies} or {"robots"}
     if len(recorded) == 1:
         return next(iter(recorded))
@@ -79,6 +80,39 @@ def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: M
     if any(name is None for name in names):
         raise unknown(f"none of its objects has the id {ids[[name is None for name in names]][0]}")
     return names
+
+
+def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[np.int64]:
+    """Return which of the entries of the configuration (`pogosim.scene.bodies_of`) the object of each row is of.
+
+    Args:
+        rows: Of one run, with the column robot_category.
+        configuration: That of the run.
+
+    Returns:
+        Shape (rows,), integers; -1: of a category that is not in the configuration.
+
+    Raises:
+        UnknownCategoriesError: The entries of a category differ, and nothing says which objects are whose.
+    """
+    kinds = read_kinds(configuration)
+    last = {kind.category: place for place, kind in enumerate(kinds)}
+    names = rows["robot_category"]
+    numbers: npt.NDArray[np.int64] = np.array(names.map(last).fillna(-1), dtype=np.int64)
+    differ = {kind.category for kind in kinds if kind != kinds[last[kind.category]]}
+    is_told_by_id = np.asarray(names.isin(differ))
+    if not is_told_by_id.any():
+        return numbers
+    if "robot_id" not in rows:
+        raise unknown("no column robot_id")
+    ids = rows["robot_id"].to_numpy()
+    for place, (name, first, final) in enumerate(ids_of(bodies_of(configuration), read_periodic(configuration))):
+        is_own = is_told_by_id & (names == name).to_numpy() & (ids >= first) & (ids <= final)
+        numbers[is_own] = place
+        is_told_by_id = is_told_by_id & ~is_own
+    if is_told_by_id.any():
+        raise unknown("its configuration does not say how many objects each entry has")
+    return numbers
 
 
 def recorded_categories(configuration: dict[str, Any]) -> set[str]:

@@ -25,14 +25,14 @@ BRIGHTEST = 32767
 
 
 @dataclass(frozen=True)
-class Category:
-    """Objects of one entry of `objects`, as they look."""
+class Kind:
+    """How the objects of one entry of `objects` look."""
 
-    name: str
+    category: str
     type: str  # lower case, "pogobot"
     shape: Shape
     half_thickness_mm: float = 0.0  # of a membrane
-    position_mm: tuple[float, float] | None = None  # x and y, where both are given
+    position_mm: tuple[float, float] | None = None  # x and y of a wall, where both are given
     communication_radius_mm: float = 0.0  # from an emitter to the edge of a listener; 0: mute
 
 
@@ -173,29 +173,24 @@ def read_top_speed(configuration: dict[str, Any]) -> float | None:
     return max((speed for speed in speeds if math.isfinite(speed)), default=None)
 
 
-def read_categories(configuration: dict[str, Any]) -> dict[str, Category]:
-    """All objects except lamps, by their category; of a list of entries, the last one stands for all."""
-    return {
-        name: Category(
+def bodies_of(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Entries of all objects except lamps, each with the name of its category."""
+    return [(name, own) for name, own in entries(configuration) if type_of(own) not in SPOTS + RAYS]
+
+
+def read_kinds(configuration: dict[str, Any]) -> list[Kind]:
+    """Return how the objects of each entry look, in the order of `bodies_of`."""
+    return [
+        Kind(
             name,
-            type_of(settings),
-            shape_of(settings),
-            half_thickness_of(settings),
-            position_of(settings),
-            communication_radius_of(settings),
+            type_of(own),
+            shape_of(own),
+            half_thickness_of(own),
+            position_of(own) if type_of(own) == "pogowall" else None,
+            communication_radius_of(own),
         )
-        for name, settings in entries(configuration)
-        if type_of(settings) not in SPOTS + RAYS
-    }
-
-
-def lists_of_shapes(configuration: dict[str, Any]) -> list[str]:
-    """Categories that are lists of entries with several shapes, of which a picture takes the last."""
-    shapes: dict[str, set[Shape]] = {}
-    for name, settings in entries(configuration):
-        if type_of(settings) not in SPOTS + RAYS:
-            shapes.setdefault(name, set()).add(shape_of(settings))
-    return [name for name, own in shapes.items() if len(own) > 1]
+        for name, own in bodies_of(configuration)
+    ]
 
 
 def read_lamps(configuration: dict[str, Any]) -> list[Lamp]:

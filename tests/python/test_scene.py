@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pogosim.scene import Lamp, light_levels, ray_names, read_categories, read_lamps
+from pogosim.scene import Lamp, light_levels, ray_names, read_kinds, read_lamps
 from pogosim.shapes import Shape, shape_of
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
@@ -54,19 +54,19 @@ def test_reach_ends_on_the_border_along_the_heading() -> None:
 
 def test_only_maps_are_objects_and_lamps_are_none() -> None:
     objects = {
-        "robots": {"type": "Pogobot", "x": 3, "y": "4e0"},
-        "half": {"type": "pogobot", "x": 3},
+        "walls": {"type": "Pogowall", "x": 3, "y": "4e0"},
+        "half": {"type": "pogowall", "x": 3},
         "lamp": {"type": "static_light"},
         "ray": {"type": "rotating_ray_of_light"},
         "text": "not a map",
     }
-    found = read_categories({"objects": objects})
-    assert list(found) == ["robots", "half"]
-    assert found["robots"].type == "pogobot"
-    assert found["robots"].position_mm == (3.0, 4.0)
+    found = {kind.category: kind for kind in read_kinds({"objects": objects})}
+    assert list(found) == ["walls", "half"]
+    assert found["walls"].type == "pogowall"
+    assert found["walls"].position_mm == (3.0, 4.0)
     assert found["half"].position_mm is None
     assert ray_names({"objects": objects}) == ["ray"]
-    assert read_categories({}) == read_categories({"objects": [1]}) == {}
+    assert read_kinds({}) == read_kinds({"objects": [1]}) == []
 
 
 def test_membrane_is_as_thick_as_its_dots_or_its_segments() -> None:
@@ -76,8 +76,8 @@ def test_membrane_is_as_thick_as_its_dots_or_its_segments() -> None:
         "thick": {"type": "rectmembrane", "rect_thickness": 12},
         "robots": {"type": "pogobot"},
     }
-    found = read_categories({"objects": objects})
-    assert [own.half_thickness_mm for own in found.values()] == [7.0, 3.5, 6.0, 0.0]
+    found = read_kinds({"objects": objects})
+    assert [own.half_thickness_mm for own in found] == [7.0, 3.5, 6.0, 0.0]
 
 
 # ---- light -----------------------------------------------------------------------------------------------------------

@@ -14,7 +14,8 @@ import pytest
 import yaml
 from pogosim import Simulation
 from pogosim.film.replay import category_data
-from pogosim.scene import read_categories
+from pogosim.picture.swarm import KIND, read_recording
+from pogosim.scene import read_kinds
 from running import ROOT, example, run
 
 TRAY: dict[str, Any] = {
@@ -145,8 +146,45 @@ def test_overlaps_are_those_of_the_outline_and_not_of_the_disk_around_it(tmp_pat
 
 def test_pictures_and_replays_know_the_outline() -> None:
     configuration = yaml.safe_load((ROOT / "conf/shapes.yaml").read_text())
-    categories = read_categories(configuration)
-    outline = np.array(category_data("trays", categories["trays"])["outline"])
+    kinds = {kind.category: kind for kind in read_kinds(configuration)}
+    outline = np.array(category_data("trays", kinds["trays"])["outline"])
     assert len(outline) == 8
     assert np.ptp(outline, axis=0) == pytest.approx([96.0, 160.0])
-    assert category_data("robots", categories["robots"])["outline"] is None
+    assert category_data("robots", kinds["robots"])["outline"] is None
+
+
+def test_objects_of_a_list_are_drawn_as_their_own_entries(tmp_path: Path) -> None:
+    """Whatever their ids: those of robots count upwards, those of passive objects downwards."""
+    passive = {"type": "passive_object", "nb": 1, "x": 200, "y": 200}
+    robot = {"type": "pogobot", "nb": 1, "x": 800, "y": 800}
+    boxes = [
+        {**passive, "geometry": "rectangle", "body_width": 80, "body_height": 40},
+        {**passive, "geometry": "disk", "radius": 30, "x": 500},
+        {**passive, "geometry": "disk", "radius": 30, "x": 600},
+    ]
+    robots = [
+        {**robot, "geometry": "disk", "radius": 26.5},
+        {**robot, "geometry": "disk", "radius": 26.5, "x": 600},
+        {**robot, "geometry": "triangle", "side_length": 70, "x": 200},
+    ]
+    data = tmp_path / "data.feather"
+    settings = {
+        "objects.boxes": boxes,
+        "objects.robots": robots,
+        "arena_file": "arenas/square.csv",
+        "enable_data_logging": True,
+        "data_filename": str(data),
+        "simulation_time": 1.0,
+    }
+    done = run(example("run_and_tumble"), tmp_path, settings)
+    assert done.code == 0, done.errors
+    swarm = read_recording(data).last
+    first = swarm.rows[swarm.rows["time"] == swarm.rows["time"].min()]
+    kinds = [swarm.kinds[number].shape.kind for number in first[KIND]]
+    found = sorted(zip(first["robot_category"], kinds, strict=True))
+    assert found == [("boxes", "disk")] * 2 + [("boxes", "rectangle")] + [("robots", "disk")] * 2 + [
+        ("robots", "triangle")
+    ]
+    for category, shape in (("boxes", "rectangle"), ("robots", "triangle")):
+        is_own = (first["robot_category"] == category).to_numpy() & (np.array(kinds) == shape)
+        assert first["x"].to_numpy()[is_own] == pytest.approx([200.0], abs=60.0)

@@ -27,7 +27,7 @@ from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run, named_columns
-from pogosim.scene import read_categories
+from pogosim.scene import read_kinds
 from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
 
@@ -211,7 +211,7 @@ def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str |
         return rows[names == category]
     if "robots" in there:
         return rows[names == "robots"]
-    types = {name: own.type for name, own in read_categories(dict(configuration_of(dict(metadata)))).items()}
+    types = {own.category: own.type for own in read_kinds(configuration_of(dict(metadata)))}
     active = [name for name in there if types.get(name) in MOVING]
     return rows[names.isin(active)] if active else rows
 

@@ -20,8 +20,8 @@ from pogosim.picture.images import lines_between, seen_places
 from pogosim.picture.layers import GLOWS, HINGE_PT, LINK_EDGE_PT, LINK_PT, PIN_PT
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
 from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER, tension_colours
-from pogosim.picture.swarm import OBJECT, RGB, Recording
-from pogosim.scene import MEMBRANES, TALKERS, Category
+from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording
+from pogosim.scene import MEMBRANES, TALKERS, Kind
 from pogosim.shapes import Floats
 
 Numbers = npt.NDArray[np.int64]
@@ -66,19 +66,19 @@ class Moving:
         self.box = box_of(swarm)
         self.is_cut = swarm.is_periodic  # at the border, where things come back on the other side
 
-        # Colour and category of each row.
+        # Colour and kind of each row.
         rows = self.bodies.rows
         self.objects = rows[OBJECT].to_numpy(dtype=np.int64)
         self.colours = rows[RGB].to_numpy(dtype=float)
-        names, self.kind = np.unique(rows["robot_category"].to_numpy(dtype=str), return_inverse=True)
-        self.categories = [swarm.category(str(name)) for name in names]
+        numbers, self.kind = np.unique(rows[KIND].to_numpy(), return_inverse=True)
+        self.kinds = [swarm.kinds[number] for number in numbers]
         of_each = {
-            "talks": [own.type in TALKERS for own in self.categories],
-            "range": [own.communication_radius_mm for own in self.categories],
-            "radius": [own.shape.bounding_radius_mm for own in self.categories],
-            "membrane": [own.type in MEMBRANES for own in self.categories],
+            "talks": [own.type in TALKERS for own in self.kinds],
+            "range": [own.communication_radius_mm for own in self.kinds],
+            "radius": [own.shape.bounding_radius_mm for own in self.kinds],
+            "membrane": [own.type in MEMBRANES for own in self.kinds],
         }
-        self.of_category = {name: np.array(values) for name, values in of_each.items()}
+        self.of_kind = {name: np.array(values) for name, values in of_each.items()}
         if tail_s:
             self.prepare_trails(tail_s)
 
@@ -113,9 +113,9 @@ class Moving:
             self.draw_trails(brush, time_s, now, place)
         if self.has_links:
             self.draw_links(brush, now, place)
-        which, place = seen_places(place, GLOWS[0][0] * self.of_category["radius"][self.kind[now]], self.box)
+        which, place = seen_places(place, GLOWS[0][0] * self.of_kind["radius"][self.kind[now]], self.box)
         now, angle = now[which], angle[which]
-        kinds = [(own, np.flatnonzero(self.kind[now] == i)) for i, own in enumerate(self.categories)]
+        kinds = [(own, np.flatnonzero(self.kind[now] == i)) for i, own in enumerate(self.kinds)]
         shown = [(own, which) for own, which in kinds if len(which) and own.type not in MEMBRANES]
         if self.glows:
             for own, which in shown:
@@ -125,7 +125,7 @@ class Moving:
             brush.finish()
             dots()
         for own, which in shown:
-            self.draw_category(brush, own, place[which], angle[which], self.colours[now[which]])
+            self.draw_alike(brush, own, place[which], angle[which], self.colours[now[which]])
         if self.swarm.links is not None:
             self.draw_body_links(brush, self.swarm.links, time_s)
         for own, which in shown:
@@ -151,7 +151,7 @@ class Moving:
         known = line.known[records][:, line.known[last] >= 0]  # shape (records, objects)
         way = np.concatenate([line.position[known], place[None]])  # shape (records + 1, objects, 2)
         step = np.abs(np.diff(way, axis=0))
-        is_step = (known >= 0) & ~self.of_category["membrane"][self.kind[now]]  # the pose of those is their first dot's
+        is_step = (known >= 0) & ~self.of_kind["membrane"][self.kind[now]]  # the pose of those is their first dot's
         is_near = (step <= self.extent_mm / 2.0).all(axis=-1)
         is_way = is_step & is_near
         is_crossing = is_step & ~is_near & self.is_cut
@@ -182,9 +182,9 @@ class Moving:
     def draw_links(self, brush: Brush, now: Rows, place: Floats) -> None:
         """Draw lines between objects near enough to hear each other; they end at the walls."""
         kind = self.kind[now]
-        talks = self.of_category["talks"][kind]
+        talks = self.of_kind["talks"][kind]
         kind, place = kind[talks], place[talks]
-        pairs = proximity_pairs(place, self.of_category["range"][kind], self.of_category["radius"][kind], self.box)
+        pairs = proximity_pairs(place, self.of_kind["range"][kind], self.of_kind["radius"][kind], self.box)
         if len(pairs):
             lines = outline_of(self.pixels(link_segments(place, pairs, self.box)), False)
             brush.draw(lines, line=(*to_rgb(LINK), 0.5), width_pt=0.8, on_floor=True)
@@ -215,7 +215,7 @@ class Moving:
                 disks.add((0.5 * size_pt + LINK_EDGE_PT) * unit, np.array(to_rgb(EDGE)))
                 brush.stamp_disks(disks.add(0.5 * size_pt * unit, shades[shade[chosen]][which]))
 
-    def draw_glows(self, brush: Brush, own: Category, place: Floats, angle: Floats, colours: Floats) -> None:
+    def draw_glows(self, brush: Brush, own: Kind, place: Floats, angle: Floats, colours: Floats) -> None:
         """Draw how lit LEDs light up the floor around."""
         lit = (colours != DARK_LED).any(axis=1)
         place, angle, colours = place[lit], angle[lit], colours[lit]
@@ -226,7 +226,7 @@ class Moving:
         for share, opacity in GLOWS:
             self.draw_outlines(brush, own, place, angle, colours, share, opacity)
 
-    def draw_category(self, brush: Brush, own: Category, place: Floats, angle: Floats, colours: Floats) -> None:
+    def draw_alike(self, brush: Brush, own: Kind, place: Floats, angle: Floats, colours: Floats) -> None:
         """Draw the bodies of one category."""
         if not is_disk(own):
             self.draw_outlines(brush, own, place, angle, colours)
@@ -243,7 +243,7 @@ class Moving:
     def draw_outlines(
         self,
         brush: Brush,
-        own: Category,
+        own: Kind,
         place: Floats,
         angle: Floats,
         colours: Floats,
@@ -261,7 +261,7 @@ class Moving:
             else:
                 brush.draw(path, fill=(*colour, opacity), on_floor=True)
 
-    def draw_ticks(self, brush: Brush, own: Category, place: Floats, angle: Floats, colours: Floats) -> None:
+    def draw_ticks(self, brush: Brush, own: Kind, place: Floats, angle: Floats, colours: Floats) -> None:
         """Draw where bodies head, in what stands out from their colour."""
         heading = np.column_stack([np.cos(angle), np.sin(angle)])
         ticks = self.pixels(np.stack([place + heading * own.shape.reach_mm * part for part in (0.25, 0.95)], axis=1))
@@ -273,6 +273,6 @@ class Moving:
                 brush.draw(path, line=(*to_rgb(colour), 1.0), width_pt=TICK_PT, on_floor=self.is_cut)
 
 
-def is_disk(own: Category) -> bool:
+def is_disk(own: Kind) -> bool:
     """Tell whether the objects of a category are round."""
     return own.shape.is_round

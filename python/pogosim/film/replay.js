@@ -836,6 +836,7 @@ function showKey() {
         if (colouring.labels.length > 40) key.append(`and ${colouring.labels.length - 40} more`);
     } else if (colouring.base) {
         head.categories.forEach((own, category) => {
+            if (head.categories.findIndex(({name}) => name === own.name) !== category) return;  // one of several kinds
             const object = head.objects.findIndex(([number]) => number === category);
             key.append(entry(own.name, colouring.colour(object, times.length - 1)));
         });

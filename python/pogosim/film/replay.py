@@ -27,12 +27,12 @@ from pogosim.picture.figure import notes, title
 from pogosim.picture.links import box_of
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
-from pogosim.picture.swarm import OBJECT, RGB, Recording, coloured
-from pogosim.scene import MEMBRANES, TALKERS, Category
+from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
+from pogosim.scene import MEMBRANES, TALKERS, Kind
 from pogosim.shapes import Shape
 
 FOLDER = Path(__file__).parent
-OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, "led_rgb", *RGB}
+OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, KIND, "led_rgb", *RGB}
 LIGHT_CELLS = 144
 MAX_LIGHTS = 100  # pictures of lamps that move
 DEFAULT_TAIL_S = 5.0
@@ -106,7 +106,7 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
         "low": bodies.low_mm.tolist(),
         "high": bodies.high_mm.tolist(),
         "periodic": swarm.is_periodic,
-        "categories": [category_data(str(name), swarm.category(str(name))) for name in names_in(bodies.objects)],
+        "categories": [category_data(name, swarm.kinds[kind]) for name, kind in kinds_in(bodies.objects)],
         "objects": object_list(bodies.objects),
         "poses": pose_tables(packer, bodies),
         "columns": columns,
@@ -151,33 +151,33 @@ def first_colours(head: dict[str, Any], base: dict[str, Any], codes: npt.NDArray
     return colours
 
 
-def names_in(objects: pd.DataFrame) -> list[str]:
-    """Categories of objects, in alphabetical order."""
-    return sorted(map(str, objects["robot_category"].unique()))
+def kinds_in(objects: pd.DataFrame) -> list[tuple[str, int]]:
+    """Categories of objects, in alphabetical order, each with a kind; a category may have several."""
+    return sorted({(str(name), int(kind)) for name, kind in zip(objects["robot_category"], objects[KIND], strict=True)})
 
 
 def object_list(objects: pd.DataFrame) -> list[list[Any]]:
     """Number of the category and robot_id of each object."""
-    names = names_in(objects)
+    kinds = kinds_in(objects)
     ids = pd.to_numeric(objects["robot_id"], errors="coerce")
     return [
-        [names.index(str(name)), int(own) if pd.notna(own) and math.isfinite(own) else None]
-        for name, own in zip(objects["robot_category"], ids, strict=True)
+        [kinds.index((str(name), int(kind))), int(own) if pd.notna(own) and math.isfinite(own) else None]
+        for name, kind, own in zip(objects["robot_category"], objects[KIND], ids, strict=True)
     ]
 
 
-def category_data(name: str, category: Category) -> dict[str, Any]:
-    """How the objects of a category look, and how far they are heard."""
-    shape = category.shape
+def category_data(name: str, kind: Kind) -> dict[str, Any]:
+    """How objects of a category look, and how far they are heard."""
+    shape = kind.shape
     return {
         "name": name,
         "radius": shape.bounding_radius_mm,
         "reach": shape.reach_mm,
         "outline": outline_of(shape),
-        "talks": category.type in TALKERS,
-        "range": category.communication_radius_mm,
-        "passive": category.type == "passive_object",
-        "membrane": category.type in MEMBRANES,
+        "talks": kind.type in TALKERS,
+        "range": kind.communication_radius_mm,
+        "passive": kind.type == "passive_object",
+        "membrane": kind.type in MEMBRANES,
     }
 
 
@@ -226,7 +226,7 @@ def base_colours(bodies: Timeline, recording: Recording) -> tuple[dict[str, Any]
     if has_leds:
         packed = rows["led_rgb"].to_numpy().astype(np.int64) & 0xFFFFFF
     else:
-        colours = coloured(rows, recording.last.categories)[0][RGB].to_numpy()
+        colours = coloured(rows, recording.last.kinds)[0][RGB].to_numpy()
         packed = np.round(colours * 255.0).astype(np.int64) @ np.array([65536, 256, 1])
     if len(np.unique(packed)) >= MISSING:  # the page has codes of 16 bits
         packed &= 0xF8F8F8
@@ -248,16 +248,16 @@ def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
     """Lines of walls with a program, and their colours: pairs of number of the time and colour."""
     swarm = recording.last
     walls = []
-    for category in swarm.categories.values():
-        if category.type != "pogowall":
+    for number, kind in enumerate(swarm.kinds):
+        if kind.type != "pogowall":
             continue
-        own = recording.walls[recording.walls["robot_category"] == category.name]
+        own = recording.walls[recording.walls[KIND] == number]
         changes: list[list[Any]] = []
         for time, colour in zip(own["time"], own[RGB].to_numpy(), strict=True):
             text = hex_colour(layers.wall_colour(colour))
             if not changes or changes[-1][1] != text:
                 changes.append([bodies.index_at(float(time)), text])
-        lines = [np.round(line, 3).tolist() for line in layers.wall_lines(category, swarm.polygons)]
+        lines = [np.round(line, 3).tolist() for line in layers.wall_lines(kind, swarm.polygons)]
         walls.append({"lines": lines, "colours": changes or [[0, hex_colour(layers.wall_colour(None))]]})
     return walls
 
@@ -326,15 +326,15 @@ def membrane_tables(
     object_number = {int(own): i for i, own in enumerate(bodies.objects[OBJECT].to_numpy(dtype=int))}
     groups = []
     for _, rows in timeline.objects.reset_index(drop=True).groupby(OBJECT):
-        category = recording.last.category(str(rows["robot_category"].iloc[0]))
+        kind = recording.last.kinds[int(rows[KIND].iloc[0])]
         number = int(rows[OBJECT].iloc[0])
         groups.append(
             {
                 "object": object_number.get(number),
                 "first": int(rows.index[0]),
                 "count": len(rows),
-                "half_thickness": category.half_thickness_mm,
-                "segments": category.type == "rectmembrane",
+                "half_thickness": kind.half_thickness_mm,
+                "segments": kind.type == "rectmembrane",
             }
         )
     times = [float(f"{time:.12g}") for time in timeline.times_s]

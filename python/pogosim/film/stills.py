@@ -86,10 +86,10 @@ class Stills:
             self.border.draw(self.canvas.get_renderer())
         return bytes(self.canvas.buffer_rgba())
 
-    def background_key(self, time_s: float, wall_colours: dict[str, Floats]) -> object:
+    def background_key(self, time_s: float, wall_colours: dict[int, Floats]) -> object:
         """Return what differs whenever the background does."""
         lamps = tuple((tuple(lamp.centre_at(time_s)), lamp.photo_phase(time_s)) for lamp in self.recording.last.lamps)
-        return lamps, tuple((name, tuple(colour)) for name, colour in sorted(wall_colours.items()))
+        return lamps, tuple((wall, tuple(colour)) for wall, colour in sorted(wall_colours.items()))
 
     def draw_background(self, swarm: Swarm) -> None:
         """Draw all that stands still, and keep its pixels."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -26,8 +27,8 @@ from pogosim.picture.palette import (
     WALL,
     tension_colours,
 )
-from pogosim.picture.swarm import OBJECT, RGB, Swarm
-from pogosim.scene import MEMBRANES, Category, bounds, floor_outline, light_levels
+from pogosim.picture.swarm import KIND, OBJECT, RGB, Swarm, is_of_type
+from pogosim.scene import MEMBRANES, Kind, bounds, floor_outline, light_levels
 from pogosim.shapes import Floats, Shape
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
@@ -119,10 +120,9 @@ def draw_trails(axes: Axes, swarm: Swarm, floor: PathPatch, tail_s: float, max_s
     cut_off(trails, swarm, floor)
 
 
-def is_membrane(swarm: Swarm) -> pd.Series[bool]:
-    """Tell which rows are those of membranes."""
-    names = [name for name, own in swarm.categories.items() if own.type in MEMBRANES]
-    return swarm.rows["robot_category"].isin(names)
+def is_membrane(swarm: Swarm) -> npt.NDArray[np.bool_]:
+    """Tell which rows are those of membranes, shape (rows,)."""
+    return is_of_type(swarm.rows, swarm.kinds, MEMBRANES)
 
 
 def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
@@ -175,7 +175,7 @@ def draw_light(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     light.set_clip_path(floor)
 
 
-def wall_lines(wall: Category, polygons: list[Floats]) -> list[Floats]:
+def wall_lines(wall: Kind, polygons: list[Floats]) -> list[Floats]:
     """Outlines of walls with a program, each of shape (corners, 2), mm."""
     if wall.shape.kind == "arena":
         return polygons
@@ -190,10 +190,10 @@ def wall_colour(colour: Floats | None) -> Floats:
 
 def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw walls that run programs as lines that glow in the colour of their LED."""
-    for wall in swarm.categories.values():
+    for number, wall in enumerate(swarm.kinds):
         if wall.type != "pogowall":
             continue
-        colour = wall_colour(swarm.wall_colours.get(wall.name))
+        colour = wall_colour(swarm.wall_colours.get(number))
         closed = [np.vstack([line, line[:1]]) for line in wall_lines(wall, swarm.polygons)]
         for width, alpha in ((16.0, 0.10), (11.0, 0.16), (6.0, 0.28), (1.8, 1.0)):
             glow = LineCollection(closed, colors=[(*colour, alpha)], linewidths=width, joinstyle="round", zorder=1.5)
@@ -204,8 +204,9 @@ def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
 
 def draw_membranes(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw the lines and dots of membranes; those without dots in the file as a mark at their first."""
-    for (name, _), dots in swarm.dots.sort_values("subpart_id").groupby(["robot_category", "robot_id"]):
-        half_thickness = swarm.category(str(name)).half_thickness_mm
+    for _, dots in swarm.dots.sort_values("subpart_id").groupby(OBJECT):
+        kind = swarm.kinds[int(dots[KIND].iloc[0])]
+        half_thickness = kind.half_thickness_mm
         ring = joined(dots[["x", "y"]].to_numpy(dtype=float), box_of(swarm))
         middle = (ring.min(axis=0) + ring.max(axis=0)) / 2.0
         reach = np.hypot(*(ring - middle).T).max() + half_thickness
@@ -213,7 +214,7 @@ def draw_membranes(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
         lines = list(ring + (places - middle)[:, None])
         colour = dots[RGB].to_numpy()[0]
         width = 2.0 * half_thickness * points_per_mm(axes)
-        segments = swarm.category(str(name)).type == "rectmembrane"
+        segments = kind.type == "rectmembrane"
         style = {"joinstyle": "round", "capstyle": "round"}
         outline = LineCollection(
             lines, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
@@ -245,13 +246,13 @@ def marked_membranes(swarm: Swarm) -> pd.DataFrame:
 def draw_bodies(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw every rigid object at its last pose: its shape, and a tick where it heads."""
     last = swarm.rows[~is_membrane(swarm)].groupby(OBJECT).tail(1)
-    for name, rows in last.groupby("robot_category"):
-        draw_category(axes, swarm, swarm.category(str(name)), rows, floor)
+    for _, rows in last.groupby(["robot_category", KIND]):
+        draw_alike(axes, swarm, swarm.kinds[int(rows[KIND].iloc[0])], rows, floor)
 
 
-def draw_category(axes: Axes, swarm: Swarm, category: Category, rows: pd.DataFrame, floor: PathPatch) -> None:
-    """Draw the objects of one category; lit LEDs, if colours are those, glow."""
-    shape = category.shape
+def draw_alike(axes: Axes, swarm: Swarm, kind: Kind, rows: pd.DataFrame, floor: PathPatch) -> None:
+    """Draw objects that look the same; lit LEDs, if colours are those, glow."""
+    shape = kind.shape
     reach = GLOWS[0][0] * shape.bounding_radius_mm
     which, position = seen_places(rows[["x", "y"]].to_numpy(dtype=float), reach, box_of(swarm))
     angle = rows["angle"].to_numpy(dtype=float)[which]
@@ -263,7 +264,7 @@ def draw_category(axes: Axes, swarm: Swarm, category: Category, rows: pd.DataFra
         return collection
 
     # A lit LED lights up the floor around.
-    lit = (colours != DARK_LED).any(axis=1) & (category.type != "passive_object")
+    lit = (colours != DARK_LED).any(axis=1) & (kind.type != "passive_object")
     for scale, alpha in GLOWS if swarm.colouring is None else ():
         glow = bodies(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
         glow.set_clip_path(floor)

@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box, lines_between
-from pogosim.picture.swarm import OBJECT, Swarm
+from pogosim.picture.swarm import KIND, OBJECT, Swarm
 from pogosim.scene import TALKERS, bounds
 from pogosim.shapes import Floats
 
@@ -77,7 +77,7 @@ def links_at_end(swarm: Swarm) -> Floats:
 
 def links_between(swarm: Swarm, rows: pd.DataFrame) -> Floats:
     """Lines of the links between the objects of some rows, one for each, shape (k, 2, 2), mm."""
-    own = [swarm.category(str(name)) for name in rows["robot_category"]]
+    own = [swarm.kinds[number] for number in rows[KIND]]
     talks = np.array([category.type in TALKERS for category in own], dtype=bool)
     position = rows[["x", "y"]].to_numpy(dtype=float)[talks]
     bodies = [category for category in own if category.type in TALKERS]

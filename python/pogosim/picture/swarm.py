@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from pogosim.arguments import Arguments
 from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.errors import PictureError
 from pogosim.far_away import is_near
-from pogosim.object_categories import with_categories
+from pogosim.object_categories import UnknownCategoriesError, kinds_of, with_categories
 from pogosim.outputs import PathLike
 from pogosim.picture.body_links import BodyLinks, read_body_links
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
@@ -23,12 +24,11 @@ from pogosim.picture.selection import checked, numbers_runs, one_run
 from pogosim.picture.speed import OBJECT as OBJECT_COLUMN
 from pogosim.picture.speed import SPEED, object_steps, with_speed
 from pogosim.scene import (
-    Category,
+    Kind,
     Lamp,
     bounds,
-    lists_of_shapes,
     ray_names,
-    read_categories,
+    read_kinds,
     read_lamps,
     read_periodic,
     read_top_speed,
@@ -39,12 +39,11 @@ from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
 
 # Robots of the real swarm, where a file does not say.
-UNKNOWN = Category(
-    "robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM
-)
+UNKNOWN = Kind("robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM)
 
 # Columns that are added to those of the file. No program's column has such a name: it would end at its first character.
 OBJECT = OBJECT_COLUMN
+KIND = "\0kind"  # place in Swarm.kinds
 RGB = ["\0rgb_0", "\0rgb_1", "\0rgb_2"]
 
 
@@ -52,11 +51,11 @@ RGB = ["\0rgb_0", "\0rgb_1", "\0rgb_2"]
 class Swarm:
     """One run up to a time, ready to be drawn. Lengths in mm, y downwards; times in s."""
 
-    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns OBJECT and RGB (0 to 1) added
+    rows: pd.DataFrame  # finite poses of objects, ordered by time; columns OBJECT, KIND, RGB (0 to 1) added
     dots: pd.DataFrame  # the same of the parts of membranes, at the end; columns subpart_id, too
-    wall_colours: dict[str, Floats]  # of pogowalls at the end, by category
+    wall_colours: dict[int, Floats]  # of pogowalls at the end, by their place in kinds
     polygons: list[Floats]  # each of shape (vertices, 2), at least one; the outer wall first
-    categories: dict[str, Category]
+    kinds: list[Kind]  # of the entries of the configuration; the last one is UNKNOWN
     lamps: list[Lamp]
     rays: list[str]  # categories of lighthouses
     end_s: float
@@ -75,10 +74,6 @@ class Swarm:
         """Warn (AmbiguousStepsWarning) if objects need not have gone the shortest way between their records."""
         if self.is_periodic:
             object_steps(self.rows, self.period_mm, self.top_speed_mm_s)
-
-    def category(self, name: str) -> Category:
-        """Look up how the objects of a category look."""
-        return self.categories.get(name, UNKNOWN)
 
 
 @dataclass
@@ -122,12 +117,12 @@ class Recording:
             end_s=end_s,
         )
 
-    def wall_colours(self, time_s: float) -> dict[str, Floats]:
-        """Colours of pogowalls at a time, by category."""
+    def wall_colours(self, time_s: float) -> dict[int, Floats]:
+        """Colours of pogowalls at a time, by their place in kinds."""
         if self.walls.empty:
             return {}
-        walls = self.walls[self.walls["time"] <= time_s].groupby("robot_category").tail(1)
-        return {str(name): own[RGB].to_numpy()[0] for name, own in walls.groupby("robot_category")}
+        walls = self.walls[self.walls["time"] <= time_s].groupby(KIND).tail(1)
+        return dict(zip(walls[KIND].to_list(), walls[RGB].to_numpy(), strict=True))
 
 
 given = Arguments(PictureError)
@@ -172,23 +167,17 @@ def read_recording(
     if color_by not in (None, SPEED, "led_rgb"):
         checked_column(rows, str(color_by))
     configuration = configuration_of(metadata)
-    categories = read_categories(configuration)
-    for name in lists_of_shapes(configuration):
-        warnings.warn(
-            f"objects.{name}: its entries have different shapes, and all are drawn as the last one. Give them "
-            "categories of their own; frames of the simulator (save_video_period) are right",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-    rows = completed(with_defaults(with_categories(rows, metadata)))
+    kinds = [*read_kinds(configuration), UNKNOWN]
+    rows = with_categories(rows, metadata)
+    rows = completed(with_defaults(rows.assign(**{KIND: kind_numbers(rows, configuration)})))
     is_periodic = read_periodic(configuration)
     top_speed_mm_s = read_top_speed(configuration)
     if color_by == SPEED:
         rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None, top_speed_mm_s)
-    rows, colouring = coloured(rows, categories, color_by)
+    rows, colouring = coloured(rows, kinds, color_by)
 
     # In files of earlier versions, walls have no pose.
-    is_wall = rows["robot_category"].isin([name for name, own in categories.items() if own.type == "pogowall"])
+    is_wall = is_of_type(rows, kinds, ("pogowall",))
     has_pose = np.isfinite(rows["time"]) & np.isfinite(rows["x"]) & np.isfinite(rows["y"]) & ~is_wall
     is_part = rows["subpart_id"] >= 0
     objects = rows[has_pose & ~is_part].reset_index(drop=True)
@@ -198,8 +187,8 @@ def read_recording(
         rows=objects,
         dots=rows[has_pose & is_part],
         wall_colours={},
-        polygons=polygons or [box_around(rows[has_pose], categories)],
-        categories=categories,
+        polygons=polygons or [box_around(rows[has_pose], kinds)],
+        kinds=kinds,
         lamps=read_lamps(configuration),
         rays=ray_names(configuration),
         end_s=float(objects["time"].iloc[-1]),
@@ -231,8 +220,30 @@ def completed(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(**{OBJECT: rows.groupby(["robot_category", "robot_id"], sort=True).ngroup()})
 
 
+def kind_numbers(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[np.int64]:
+    """Return the place in Swarm.kinds of each row; of an entry of its category where nothing says of which."""
+    try:
+        return kinds_of(rows, configuration)
+    except UnknownCategoriesError:
+        last = {kind.category: number for number, kind in enumerate(read_kinds(configuration))}
+        lists = sorted(name for name in last if isinstance(configuration["objects"][name], list))
+        warnings.warn(
+            f"nothing says which objects of {', '.join(lists)} are of which entry of the list (nb, robot_id), so all "
+            "are drawn as those of the last one",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+        return np.asarray(rows["robot_category"].map(last).fillna(-1), dtype=np.int64)
+
+
+def is_of_type(rows: pd.DataFrame, kinds: list[Kind], types: Sequence[str]) -> npt.NDArray[np.bool_]:
+    """Tell which rows are those of objects of some types, shape (rows,)."""
+    is_wanted = np.array([kind.type in types for kind in kinds])
+    return np.asarray(is_wanted[rows[KIND].to_numpy()])
+
+
 def coloured(
-    rows: pd.DataFrame, categories: dict[str, Category], color_by: str | None = None
+    rows: pd.DataFrame, kinds: list[Kind], color_by: str | None = None
 ) -> tuple[pd.DataFrame, Colouring | None]:
     """Add the colours of a column, by default LEDs, or of categories if the file does not have those."""
     colouring: Colouring | None = None
@@ -241,8 +252,7 @@ def coloured(
         colours = colouring.colours(rows[str(color_by)])
     elif "led_rgb" in rows:
         colours = led_colours(rows["led_rgb"].to_numpy())
-        passive = [name for name, own in categories.items() if own.type == "passive_object"]
-        colours[rows["robot_category"].isin(passive).to_numpy()] = NO_LED
+        colours[is_of_type(rows, kinds, ("passive_object",))] = NO_LED
     elif color_by == "led_rgb":
         raise PictureError("it has no column led_rgb of integers (data_logger_led: true writes it)")
     else:
@@ -252,10 +262,9 @@ def coloured(
     return rows.assign(**dict(zip(RGB, colours.T, strict=True))), colouring
 
 
-def box_around(rows: pd.DataFrame, categories: dict[str, Category]) -> Floats:
+def box_around(rows: pd.DataFrame, kinds: list[Kind]) -> Floats:
     """Return the box in which all objects ever were, as a polygon of shape (4, 2)."""
-    names = rows["robot_category"].unique()
-    margin = max(categories.get(str(name), UNKNOWN).shape.bounding_radius_mm for name in names)
+    margin = max(kinds[number].shape.bounding_radius_mm for number in rows[KIND].unique())
     left, top = rows[["x", "y"]].to_numpy(dtype=float).min(axis=0) - margin
     right, bottom = rows[["x", "y"]].to_numpy(dtype=float).max(axis=0) + margin
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
