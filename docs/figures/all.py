@@ -41,6 +41,7 @@ try:
     import printed
     import reception
     import replay
+    import shadows
     import shapes_of_bodies
     import swarm
     import window
@@ -80,6 +81,7 @@ SCRIPTS: dict[str, ModuleType] = {
         printed,
         reception,
         replay,
+        shadows,
         shapes_of_bodies,
         swarm,
         window,

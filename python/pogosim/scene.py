@@ -235,6 +235,12 @@ def ray_names(configuration: dict[str, Any]) -> list[str]:
     return [name for name, settings in entries(configuration) if type_of(settings) in RAYS]
 
 
+def shadow_names(configuration: dict[str, Any]) -> list[str]:
+    """Categories of lamps that cast shadows."""
+    lamps = [(name, settings) for name, settings in entries(configuration) if type_of(settings) in SPOTS]
+    return list(dict.fromkeys(name for name, settings in lamps if settings.get("casts_shadows") is True))
+
+
 def light_levels(
     lamps: list[Lamp], polygons: list[Floats], points_mm: Floats, time_s: float, period_mm: Floats | None = None
 ) -> Floats:

@@ -358,6 +358,12 @@ def test_lighthouse_is_a_note(tmp_path: Path) -> None:
     assert swarm_picture.notes(read_swarm(tmp_path / "data.feather")) == "not drawn: beams of tower"
 
 
+def test_shadows_are_a_note(tmp_path: Path) -> None:
+    spot = {"type": "static_light", "geometry": "disk", "x": 200, "y": 300, "radius": 40, "value": 300}
+    scene(tmp_path, {"spot": {**spot, "casts_shadows": True}, "other": {**spot, "casts_shadows": False}})
+    assert swarm_picture.notes(read_swarm(tmp_path / "data.feather")) == "not drawn: shadows of spot"
+
+
 def test_wall_with_a_program_glows_in_the_colour_of_its_led(tmp_path: Path) -> None:
     wall = others("walls", [200.0], [200.0], 0.0)
     picture_mm = scene(tmp_path, {"walls": {"type": "pogowall", "geometry": "arena"}}, wall)

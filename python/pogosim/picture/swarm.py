@@ -32,6 +32,7 @@ from pogosim.scene import (
     read_lamps,
     read_periodic,
     read_top_speed,
+    shadow_names,
 )
 from pogosim.several_files import configuration_of
 from pogosim.shapes import Floats, Shape
@@ -58,6 +59,7 @@ class Swarm:
     kinds: list[Kind]  # of the entries of the configuration; the last one is UNKNOWN
     lamps: list[Lamp]
     rays: list[str]  # categories of lighthouses
+    shadows: list[str]  # categories of lamps that cast shadows
     end_s: float
     is_periodic: bool = False
     top_speed_mm_s: float | None = None  # of the robots that drive; None: the file does not say
@@ -191,6 +193,7 @@ def read_recording(
         kinds=kinds,
         lamps=read_lamps(configuration),
         rays=ray_names(configuration),
+        shadows=shadow_names(configuration),
         end_s=float(objects["time"].iloc[-1]),
         is_periodic=is_periodic,
         top_speed_mm_s=top_speed_mm_s,
