@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -154,12 +155,9 @@ std::span<Key<FirmwareSpec> const> firmware_keys() {
 
 /// Finds the file of a firmware.
 void find_firmware(Place const& place, Reading& reading, FirmwareSpec& spec) {
-    FoundFile const found = search_file(reading.configuration, spec.file);
-    if (spec.file.empty() || found.path.empty()) {
-        fail_at(place, fmt::format("there is no file '{}'{}", shown(spec.file), found.searched));
-    }
-    reading.object_files.push_back({found.path, "the firmware"});
-    spec.file = found.path.string();
+    std::filesystem::path const found = find_file(place, reading.configuration, "an ELF file");
+    reading.object_files.push_back({found, "the firmware"});
+    spec.file = found.string();
 }
 
 FirmwareSpec read_firmware_map(MapReader& robot, Node const& brain) {

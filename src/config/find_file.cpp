@@ -68,6 +68,11 @@ std::vector<std::string> folder_names(std::vector<std::filesystem::path> const& 
     return names;
 }
 
+bool is_folder(std::filesystem::path const& path) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored);
+}
+
 }  // namespace
 
 bool is_periodic_square(std::filesystem::path const& name) {
@@ -101,6 +106,19 @@ FoundFile search_file(std::filesystem::path const& configuration, std::string co
     return {"", fmt::format("; searched {}", fmt::join(folder_names(folders), ", then in "))};
 }
 
+std::filesystem::path find_file(Place const& place, std::filesystem::path const& configuration,
+                                std::string_view expected, std::string_view hint) {
+    std::string const& name = place.node.scalar;
+    FoundFile found = search_file(configuration, name);
+    if (name.empty() || found.path.empty()) {
+        fail_at(place, fmt::format("there is no file '{}'{}{}", shown(name), found.searched, hint));
+    }
+    if (is_folder(found.path)) {
+        fail_at(place, fmt::format("'{}' is a folder; expected {}", shown(name), expected));
+    }
+    return std::move(found.path);
+}
+
 std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name) {
     if (name.empty()) {
         return {};
@@ -115,7 +133,7 @@ std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::
                                       found.searched,
                                       is_arena ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
     }
-    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
+    if (is_folder(found.path)) {
         throw ConfigError(
             fmt::format("{}: '{}' is a folder; expected a file", place_of(scenario, setting), shown(name)));
     }

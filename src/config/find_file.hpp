@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "config/places.hpp"
 #include "config/scenario.hpp"
+#include "config/values.hpp"
 
 namespace pogosim {
 
@@ -18,8 +20,12 @@ struct FoundFile {
 /// environment variable POGOSIM_PATH (separated by ':'), then among the files installed or bundled with Pogosim.
 FoundFile search_file(std::filesystem::path const& configuration, std::string const& name);
 
-/// Returns the path of a file that the configuration names, as search_file() finds it. Throws ConfigError if there is
-/// none, or a folder. An empty name stays empty.
+/// The path of the file that a configuration names at a place, as search_file() finds it. Throws ConfigError at the
+/// place if there is none (with the `hint`), or a folder. `expected`: "a YAML file".
+std::filesystem::path find_file(Place const& place, std::filesystem::path const& configuration,
+                                std::string_view expected, std::string_view hint = {});
+
+/// The same of a setting, whose place is known by its name. An empty name stays empty.
 std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::string const& name);
 
 /// Whether an arena file has one of the names by which configurations mean a square without walls: torus.csv and

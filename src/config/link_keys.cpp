@@ -191,13 +191,8 @@ void find_file_of(MapReader const& reader, LinkConfig& link) {
     if (node == nullptr || link.file.empty() || (!is_list && link.topology != LinkTopology::fixed)) {
         return;
     }
-    FoundFile const found = search_file(reader.reading().configuration, link.file);
-    if (found.path.empty()) {
-        fail_at({*node, reader.path_of("file")},
-                fmt::format("there is no file '{}'{}", shown(link.file), found.searched));
-    }
-    link.found_file = found.path;
-    reader.reading().object_files.push_back({found.path, "the list of links"});
+    link.found_file = find_file({*node, reader.path_of("file")}, reader.reading().configuration, "a CSV file");
+    reader.reading().object_files.push_back({link.found_file, "the list of links"});
 }
 
 /// Keys that are there, and mean nothing for this type and topology.

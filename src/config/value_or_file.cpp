@@ -1,9 +1,6 @@
 #include "config/value_or_file.hpp"
 
-#include <fmt/format.h>
-
 #include <filesystem>
-#include <system_error>
 
 #include "config/find_file.hpp"
 
@@ -14,14 +11,7 @@ std::filesystem::path path_of_yaml(Place const& place, std::filesystem::path con
     if (place.node.kind != Node::Kind::scalar || place.node.scalar.empty()) {
         fail_expected(place, expected);
     }
-    FoundFile const found = search_file(configuration, place.node.scalar);
-    if (found.path.empty()) {
-        fail_at(place, fmt::format("there is no file '{}'{}{}", shown(place.node.scalar), found.searched, hint));
-    }
-    if (std::error_code ignored; std::filesystem::is_directory(found.path, ignored)) {
-        fail_at(place, fmt::format("'{}' is a folder; expected a YAML file", shown(place.node.scalar)));
-    }
-    return found.path;
+    return find_file(place, configuration, "a YAML file", hint);
 }
 
 WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading) {

@@ -188,6 +188,8 @@ TEST(Links, FilesAreFoundBesideTheConfiguration) {
         "x.yaml:7: links.skin.file: expected the name of a CSV file with columns a and b; 'topology: list' needs it");
     std::string const missing = error("    between: robots\n    topology: list\n    file: none.csv\n");
     EXPECT_TRUE(missing.starts_with("x.yaml:10: links.skin.file: there is no file 'none.csv'; searched ")) << missing;
+    EXPECT_EQ(error("    between: robots\n    topology: list\n    file: .\n"),
+              "x.yaml:10: links.skin.file: '.' is a folder; expected a CSV file");
     Folder const folder;
     std::filesystem::create_directory("conf");
     Folder::write("conf/pairs.csv", "a,b\n0,1\n");

@@ -210,6 +210,12 @@ TEST(RobotModel, FolderInPlaceOfAFileIsRefusedWithItsLine) {
     EXPECT_NE(error_in("    robot_model: .\n").find("'.' is a folder; expected a YAML file"), std::string::npos);
     EXPECT_NE(error_in("    robot_model: .\n").find("objects.robots.robot_model"), std::string::npos);
     EXPECT_NE(error_in("    function_costs: .\n").find("'.' is a folder; expected a YAML file"), std::string::npos);
+    EXPECT_EQ(error_in("    brain: {firmware: .}\n"),
+              "x.yaml:6: objects.robots.brain.firmware: '.' is a folder; expected an ELF file");
+    Folder const folder;
+    std::filesystem::create_directory("robot.elf");
+    EXPECT_EQ(error_in("    brain: robot.elf\n"),
+              "x.yaml:6: objects.robots.brain: 'robot.elf' is a folder; expected an ELF file");
 }
 
 TEST(RobotModel, WrongPartsAreRefused) {
