@@ -44,7 +44,8 @@ std::span<Key<Entry> const> entry_keys() {
           "When: at the robot's first tick at or after this time of its own clock.", /*required=*/true},
         K{"motors", Elsewhere{kMotors}, any(), "", "Powers from then on; above 0: forwards."},
         K{"led", Elsewhere{kLed}, any(), "", "Colour of an LED from then on."},
-        K{"led_id", &Entry::led_id, between(0, static_cast<int>(kLedCount) - 1), "", "Which LED; 0 is the head."},
+        K{"led_id", &Entry::led_id, between(0, static_cast<int>(kLedCount) - 1).whole(), "",
+          "Which LED; 0 is the head."},
         K{"message", &Entry::message, any(), "", "Text to send once, in all directions, up to 382 bytes."},
     };
     return keys;

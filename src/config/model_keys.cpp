@@ -54,7 +54,7 @@ struct WrittenFlash {
 
 std::span<Key<WrittenFlash> const> flash_keys() {
     static std::array const keys{
-        Key<WrittenFlash>{"flash_pages", &WrittenFlash::pages, between(0, 5888), "pages of 256 bytes",
+        Key<WrittenFlash>{"flash_pages", &WrittenFlash::pages, between(0, 5888).whole(), "pages of 256 bytes",
                           "Pages of flash memory for programs. Default: 5888."},
     };
     return keys;
@@ -103,7 +103,7 @@ std::span<Key<WrittenMotor> const> motor_keys() {
           "What the motor adds to the robot's speed along its heading, at full power forwards."},
         K{"angular_rad_s", &WrittenMotor::angular_rad_s, between(-1e4, 1e4).usually_up_to(50), "rad/s",
           "What it adds to the angular velocity, clockwise on the screen."},
-        K{"forward", &WrittenMotor::forward, between(0, 1), "",
+        K{"forward", &WrittenMotor::forward, between(0, 1).whole(), "",
           "Direction bit with which it turns forwards (pogobot_motor_dir_set). Default: 0 on the right and the back, 1 "
           "on the left."},
     };
@@ -113,9 +113,9 @@ std::span<Key<WrittenMotor> const> motor_keys() {
 std::span<Key<ProcessorSpec> const> processor_keys() {
     using K = Key<ProcessorSpec>;
     static std::array const keys{
-        K{"clock_hz", &ProcessorSpec::clock_hz, between(1, 4e9), "Hz",
+        K{"clock_hz", &ProcessorSpec::clock_hz, between(1, 4e9).whole(), "Hz",
           "Clock rate. Code takes no time unless `cpu_time` is counted."},
-        K{"memory_bytes", &ProcessorSpec::memory_bytes, between(1024, 4e9), "bytes",
+        K{"memory_bytes", &ProcessorSpec::memory_bytes, between(1024, 4e9).whole(), "bytes",
           "Memory of a firmware for program, variables, stack and what it allocates. For a program in C, warnings say "
           "when it would not be enough."},
         K{"cycle_factor", &ProcessorSpec::cycle_factor, between(1e-3, 1000), "",
@@ -128,12 +128,12 @@ std::span<Key<ProcessorSpec> const> processor_keys() {
 
 std::span<Key<CycleCosts> const> cycle_keys() {
     using K = Key<CycleCosts>;
-    constexpr Range most = between(1, 1000);
+    constexpr Range most = between(1, 1000).whole();
+    constexpr Range most_or_none = between(0, 1000).whole();
     static std::array const keys{
         K{"alu", &CycleCosts::alu, most, "cycles", "Addition, comparison, logic, lui, auipc, fence."},
         K{"shift", &CycleCosts::shift, most, "cycles", "A shift by 0 bits or 1."},
-        K{"shift_further_bit", &CycleCosts::shift_further_bit, between(0, 1000), "cycles",
-          "Each further bit of a shift."},
+        K{"shift_further_bit", &CycleCosts::shift_further_bit, most_or_none, "cycles", "Each further bit of a shift."},
         K{"load", &CycleCosts::load, most, "cycles", "Reading memory: lb, lh, lw."},
         K{"store", &CycleCosts::store, most, "cycles", "Writing memory: sb, sh, sw."},
         K{"multiply", &CycleCosts::multiply, most, "cycles", "mul, mulh."},
@@ -145,7 +145,7 @@ std::span<Key<CycleCosts> const> cycle_keys() {
         K{"branch_predicted_not_taken", &CycleCosts::branch_predicted_not_taken, most, "cycles",
           "A branch forwards that is not taken."},
         K{"branch_mispredicted", &CycleCosts::branch_mispredicted, most, "cycles", "Any other branch."},
-        K{"cache_miss", &CycleCosts::cache_miss, between(0, 1000), "cycles",
+        K{"cache_miss", &CycleCosts::cache_miss, most_or_none, "cycles",
           "Fetching a line of 32 bytes of code that is not in the instruction cache of 2 KiB. 0: all code is in it."},
     };
     return keys;

@@ -15,7 +15,8 @@ struct Range {
     bool without_min = false;  // min itself is outside
     bool with_infinity = false;
     bool with_nan = false;
-    double usual_min = 0.0;  // of the absolute value; 0 itself is usual
+    bool without_fraction = false;  // of integers: 1.5 is refused; else it is cut to 1, with a warning
+    double usual_min = 0.0;         // of the absolute value; 0 itself is usual
     double usual_max = std::numeric_limits<double>::infinity();
 
     constexpr Range up_to(double new_max) const {
@@ -31,6 +32,13 @@ struct Range {
     constexpr Range or_nan() const {
         Range range = *this;
         range.with_nan = true;
+        return range;
+    }
+
+    /// For integers that no older configuration has.
+    constexpr Range whole() const {
+        Range range = *this;
+        range.without_fraction = true;
         return range;
     }
 

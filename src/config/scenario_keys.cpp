@@ -76,7 +76,7 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Variables of the user program outside USERDATA. shared: one for all robots. own: each robot has its own, as "
           "on real robots, except those marked POGO_SHARED; the robots then take their steps on one thread. auto: own "
           "for programs written for the robots' SDK (pogobot.h), else shared."},
-        K{"robot_stack_size", &Scenario::robot_stack_kib, between(kLeastStackKib, 1 << 20), "KiB",
+        K{"robot_stack_size", &Scenario::robot_stack_kib, between(kLeastStackKib, 1 << 20).whole(), "KiB",
           "Stack on which the program of a robot runs. Only what is used of it takes memory."},
         K{"coroutine_stack_size", &Scenario::coroutine_stack_bytes, between(1, 1 << 30), "bytes",
           "The same in bytes, rounded up to at least 64 KiB, as the original simulator has it."}

@@ -94,7 +94,8 @@ std::string expected_integer(Limits const& limits) {
 template <class Integer>
 void read_integer(Place const& place, Limits const& limits, Integer& value) {
     std::optional<double> const number = number_of(place.node);
-    if (!number || !limits_of_type<Integer>(limits).range.contains(std::trunc(*number))) {
+    bool const is_refused = number && limits.range.without_fraction && std::trunc(*number) != *number;
+    if (!number || is_refused || !limits_of_type<Integer>(limits).range.contains(std::trunc(*number))) {
         fail_expected(place, expected_integer<Integer>(limits));
     }
     value = static_cast<Integer>(*number);

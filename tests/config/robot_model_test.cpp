@@ -218,6 +218,24 @@ TEST(RobotModel, FolderInPlaceOfAFileIsRefusedWithItsLine) {
               "x.yaml:6: objects.robots.brain: 'robot.elf' is a folder; expected an ELF file");
 }
 
+TEST(RobotModel, FractionsOfWhatTheRobotHasAsWholeNumbersAreRefused) {
+    std::vector<std::pair<std::string, std::string>> const values{
+        {"processor: {cycles: {cache_miss: 1.5}}", "processor.cycles.cache_miss: expected an integer from 0 to 1000"},
+        {"processor: {cycles: {shift_further_bit: 0.5}}", "processor.cycles.shift_further_bit: expected an integer"},
+        {"processor: {cycles: {load: 3.2}}", "processor.cycles.load: expected an integer from 1 to 1000 (cycles)"},
+        {"processor: {clock_hz: 1.5}", "processor.clock_hz: expected an integer from 1 to"},
+        {"processor: {memory_bytes: 2048.5}", "processor.memory_bytes: expected an integer from 1024 to"},
+        {"flash_pages: 10.5", "flash_pages: expected an integer from 0 to 5888"},
+        {"motors: {left: {forward: 0.5}}", "motors.left.forward: expected an integer from 0 to 1"},
+    };
+    for (auto const& [line, what] : values) {
+        EXPECT_EQ(error_in("    " + line + "\n").find("x.yaml:6: objects.robots." + what), 0U) << line;
+    }
+    Warnings const warnings;
+    EXPECT_EQ(robot("    processor: {cycles: {cache_miss: 2.0}}\n").model.processor.cycles.cache_miss, 2U);
+    EXPECT_EQ(warnings.text(), "");
+}
+
 TEST(RobotModel, WrongPartsAreRefused) {
     EXPECT_EQ(error_in("    faces: [1]\n"), "x.yaml:6: objects.robots.faces.0: expected a map of keys, found 1");
     EXPECT_NE(error_in("    faces: {angle_deg: 0}\n").find("expected a list of maps"), std::string::npos);
