@@ -99,6 +99,10 @@ void HostBrain::send(std::uint32_t robot) {
     int const face = inputs_.send_face[i];
     std::uint8_t const all = faces_of_robot(world_, robot);
     bool const is_to_one = face >= 0 && face < static_cast<int>(kMostFaces);
+    if (!is_to_one && face != kAllDirections) [[unlikely]] {
+        warn_once(TooMuch::face, fmt::format("send_face[{}] is {}, expected -1 to {}; all directions are used", i, face,
+                                             kMostFaces - 1));
+    }
     auto const emitters = is_to_one ? static_cast<std::uint8_t>(all & 1U << face) : all;
     auto const size = std::min(static_cast<std::size_t>(length), kMostPayloadBytes);
     if (static_cast<std::size_t>(length) > kMostPayloadBytes) [[unlikely]] {

@@ -32,7 +32,7 @@ public:
         /// Bytes of a message to send, 0 to 382; negative: none. Set back to -1 by the tick that sends it. Longer
         /// messages are cut to 382 bytes, with a warning.
         std::vector<std::int32_t> send_length;
-        std::vector<std::int8_t> send_face;  // 0 front, 1 right, 2 back, 3 left; others: all
+        std::vector<std::int8_t> send_face;  // 0 front, 1 right, 2 back, 3 left; others: all (-1 without a warning)
     };
 
     /// What the host reads, as of each robot's last tick.
@@ -75,7 +75,7 @@ public:
 
 private:
     /// Values that the host writes beyond what a robot takes, each warned of once.
-    enum class TooMuch { power, length };
+    enum class TooMuch { power, length, face };
 
     void tick(std::uint32_t robot);
     void set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorCount> const& powers);
@@ -91,7 +91,7 @@ private:
     World& world_;
     std::string category_;
     RobotRange range_;
-    std::array<bool, 2> warned_{};  // of a TooMuch
+    std::array<bool, 3> warned_{};  // of a TooMuch
     Inputs inputs_;
     Outputs outputs_;
     std::size_t most_received_ = 0;
