@@ -166,6 +166,7 @@ public:
         std::optional<RobotMemory::Saved> own_memory;
         std::vector<SavedFiber> fibers;
         DataExport columns;
+        std::vector<BoundVariable> bound_variables;
         bool is_restart_due = false;
         bool gave_user_data = false;
     };

@@ -39,6 +39,7 @@ Controllers::Saved Controllers::save() {
                 .own_memory = std::nullopt,
                 .fibers = fibers_.save(),
                 .columns = services_.data,
+                .bound_variables = services_.bound_variables,
                 .is_restart_due = is_restart_due_,
                 .gave_user_data = services_.gave_user_data};
     if (own_memory_) {
@@ -59,6 +60,7 @@ void Controllers::restore(Saved const& saved) {
     put_into(image_.variables, saved.variables.data());
     fibers_.restore(saved.fibers);
     services_.data = saved.columns;
+    services_.bound_variables = saved.bound_variables;
     is_restart_due_ = saved.is_restart_due;
     services_.gave_user_data = saved.gave_user_data;
     next_look_us_ = 0;

@@ -388,6 +388,21 @@ def test_programs_that_sort_go_on(tmp_path: Path) -> None:
         expect_same_course(simulation)
 
 
+def test_parameters_set_the_variables_that_they_set_then(tmp_path: Path) -> None:
+    """A program may ask for its parameter late: until then, there is no variable to set."""
+    step = 'if (pogobot_ticks == 20) { init_uint32_from_configuration(&late, "late", 1); } mydata->count = late;'
+    program = program_of(tmp_path, step, "", "static uint32_t late;")
+    with Simulation(program, scene_of(tmp_path), set={"parameters.late": 5}) as simulation:
+        simulation.step(10)
+        state = simulation.save()
+        before = course(simulation)
+        simulation.parameters["late"] = 7
+        simulation.restore(state)
+        with pytest.raises(ConfigurationError, match="late"):
+            simulation.parameters["late"] = 7
+        assert course(simulation) == before
+
+
 def test_texts_of_scanf_are_refused(tmp_path: Path) -> None:
     step = 'char* word = NULL; if (sscanf("a b", "%ms", &word) == 1) { free(word); }'
     program = program_of(tmp_path, step, "", "#include <stdio.h>")
