@@ -120,6 +120,37 @@ void take_out(std::vector<ProgramSymbols::Piece>& pieces, ProgramSymbols::Piece 
     pieces = std::move(rest);
 }
 
+/// The first conversion of sscanf() that allocates a text: "%ms", "%2$16mc", "%m[", or "%as" of old C.
+std::string allocating_conversion(std::string_view bytes) {
+    constexpr std::string_view kDigits = "0123456789$\'";
+    for (std::size_t at = bytes.find('%'); at != std::string_view::npos; at = bytes.find('%', at + 1)) {
+        std::size_t const letter = bytes.find_first_not_of(kDigits, at + 1);
+        if (letter == std::string_view::npos || (bytes[letter] != 'm' && bytes[letter] != 'a')) {
+            continue;
+        }
+        std::size_t const kind = bytes.find_first_not_of('l', letter + 1);
+        if (kind != std::string_view::npos && std::string_view("sScC[").find(bytes[kind]) != std::string_view::npos) {
+            return std::string(bytes.substr(at, kind + 1 - at));
+        }
+    }
+    return "";
+}
+
+/// The same among the texts of a program, which are neither code nor of the linker.
+std::string allocating_format(ElfFile const& file) {
+    for (Elf64_Shdr const& section : file.sections) {
+        bool const may_have_texts = section.sh_type == SHT_PROGBITS && (section.sh_flags & SHF_ALLOC) != 0 &&
+                                    (section.sh_flags & SHF_EXECINSTR) == 0;
+        if (may_have_texts && !name_of(file, section).starts_with(".eh_frame")) {
+            std::span const bytes = elf_array<char>(file.bytes, section.sh_offset, section.sh_size);
+            if (std::string found = allocating_conversion({bytes.data(), bytes.size()}); !found.empty()) {
+                return found;
+            }
+        }
+    }
+    return "";
+}
+
 std::uint32_t copy_relocation(ElfFile const& file) {
     switch (file.header->e_machine) {
         case EM_AARCH64:
@@ -173,6 +204,7 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
     ProgramSymbols found;
     ElfFile const file = elf_file(bytes);
     found.memory = memory_of_robots(file);
+    found.allocating_format = allocating_format(file);
     for (Elf64_Phdr const& segment : file.segments) {
         found.bytes_of_threads += segment.p_type == PT_TLS ? segment.p_memsz : 0;
     }

@@ -161,6 +161,12 @@ bool allocates(std::string_view name) {
            name.starts_with("_Znw") || name.starts_with("_Zna");
 }
 
+/// What tells that sscanf() may allocate texts: free(), which gives them back, or a format; empty: nothing.
+std::string how_texts_are_allocated(ProgramSymbols const& symbols) {
+    bool const gives_back = std::ranges::find(symbols.imports, "free") != symbols.imports.end();
+    return gives_back ? "free" : symbols.allocating_format;
+}
+
 /// Whether a function leaves nothing behind outside of the program's own memory. Texts, containers and exceptions of
 /// C++ do: they are on the heap. What gives memory back does not: there is none without what allocates it.
 bool leaves_no_state(std::string_view name) {
@@ -274,11 +280,8 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
             return fmt::format("the program allocates memory ('{}'), which is not copied: use arrays of a fixed size",
                                name_by_symbol(name));
         }
-        // Its %m allocates a text, which the program gives back.
-        bool const may_allocate =
-            name.ends_with("sscanf") && std::ranges::find(symbols.imports, "free") != symbols.imports.end();
-        if (may_allocate) {
-            return fmt::format("the program may allocate memory ('{}' with 'free'), which is not copied", name);
+        if (std::string const how = how_texts_are_allocated(symbols); name.ends_with("sscanf") && !how.empty()) {
+            return fmt::format("the program may allocate memory ('{}' with '{}'), which is not copied", name, how);
         }
         if (!leaves_no_state(name) && !is_of_simulator_or_mathematical(name)) {
             return fmt::format("the program uses '{}', which may have a state of its own", name_by_symbol(name));

@@ -403,6 +403,18 @@ def test_parameters_set_the_variables_that_they_set_then(tmp_path: Path) -> None
         assert course(simulation) == before
 
 
+def test_texts_of_scanf_that_are_kept_are_refused(tmp_path: Path) -> None:
+    globals_ = "#include <stdio.h>\nstatic char* word;"
+    for step, is_saved in (('sscanf("a b", "%*s %8ms", &word);', False), ('sscanf("7", "%u", &mydata->count);', True)):
+        program = program_of(tmp_path, step, "", globals_)
+        with Simulation(program, scene_of(tmp_path)) as simulation:
+            if is_saved:
+                expect_same_course(simulation)
+                continue
+            with pytest.raises(ConfigurationError, match=r"may allocate memory \('.*sscanf' with '%8ms'\)"):
+                simulation.save()
+
+
 def test_texts_of_scanf_are_refused(tmp_path: Path) -> None:
     step = 'char* word = NULL; if (sscanf("a b", "%ms", &word) == 1) { free(word); }'
     program = program_of(tmp_path, step, "", "#include <stdio.h>")
