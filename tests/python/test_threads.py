@@ -11,9 +11,11 @@ from pathlib import Path
 
 import pogosim
 import pytest
-from running import PROGRAMS, ROOT, Run, compile_program, example, run, start, without_places, write_scene
+from running import PROGRAMS, ROOT, Run, compile_program, compiler, example, run, start, without_places, write_scene
 
 Compile = Callable[[str], Path]
+
+COMPILERS = [name for name in (compiler("gcc"), compiler("clang", "clang-14")) if name]
 
 SWARM: dict[str, object] = {
     "objects.robots.nb": 600,
@@ -286,6 +288,13 @@ def test_stripped_program_takes_its_steps_one_after_the_other(tmp_path: Path) ->
     stripped = compile_program(tmp_path / "stripped", PROGRAMS / "many_threads.c", flags=("-s",))
     result = run_robots(stripped, tmp_path, 2, "nothing")
     assert "one after the other: the program has no symbol table" in result.output
+
+
+@pytest.mark.parametrize("name", COMPILERS)
+def test_programs_of_each_compiler_have_threads(name: str, tmp_path: Path) -> None:
+    """clang calls bcmp() in place of memcmp() and strcmp(), and stpcpy() in place of sprintf()."""
+    program = compile_program(tmp_path / "program", PROGRAMS / "many_threads.c", compiler=name)
+    assert "robots take their steps on all of them" in run_robots(program, tmp_path, 2, "nothing").output
 
 
 def test_runs_inside_python_have_threads_too(tmp_path: Path) -> None:
