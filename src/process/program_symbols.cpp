@@ -120,6 +120,12 @@ void take_out(std::vector<ProgramSymbols::Piece>& pieces, ProgramSymbols::Piece 
     pieces = std::move(rest);
 }
 
+/// A static function of every program, see program.c. Compilers may add to its name.
+bool is_static_of_every_program(Elf64_Sym const& symbol, std::string_view name) {
+    return ELF64_ST_BIND(symbol.st_info) == STB_LOCAL && ELF64_ST_TYPE(symbol.st_info) == STT_FUNC &&
+           name.starts_with("before_constructors");
+}
+
 /// The first conversion of sscanf() that allocates a text: "%ms", "%2$16mc", "%m[", or "%as" of old C.
 std::string allocating_conversion(std::string_view bytes) {
     constexpr std::string_view kDigits = "0123456789$\'";
@@ -212,6 +218,7 @@ ProgramSymbols symbols_of(std::span<char const> bytes) {
         if (section.sh_type == SHT_SYMTAB) {
             found.are_known = true;
             for_each_symbol(file, section, [&](Elf64_Sym const& symbol, std::string_view name) {
+                found.has_static = found.has_static || is_static_of_every_program(symbol, name);
                 auto const type = ELF64_ST_TYPE(symbol.st_info);
                 bool const is_variable = type == STT_OBJECT || type == STT_COMMON || type == STT_TLS;
                 bool const is_here = symbol.st_shndx != SHN_UNDEF && symbol.st_size > 0;

@@ -29,6 +29,7 @@ struct ProgramSymbols {
     std::vector<Piece> memory{};  // of which robots may have their own: not POGO_SHARED, nor what is of libraries
     std::vector<std::string> imports{};  // names of functions and variables of libraries
     std::size_t bytes_of_threads = 0;    // of all variables of threads, also those without a symbol (-Wl,-x)
+    bool has_static = false;             // static variables and functions are among them: not with -Wl,-x, strip -x
     std::string allocating_format{};     // a text like "%ms", with which sscanf() allocates; empty: there is none
 
     /// Whether a C++ object with this symbol is initialised at most once, when the program gets there for the first

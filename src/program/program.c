@@ -50,6 +50,7 @@ POGO_WITHIN_PROGRAM int __cxa_atexit(void (*destroy)(void*), void* object, void*
     return pogosim_at_end(destroy, object, library);
 }
 
+// Whether a program has kept the symbols of its static variables is known by this one (program_symbols.cpp).
 // After guard_process() of main.c, which must not run again; constructors of static objects come much later.
 __attribute__((constructor(102))) static void before_constructors(void) {
     pogosim_srand(1);  // what constructors draw is the same each time that a process loads the program

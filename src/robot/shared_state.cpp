@@ -145,6 +145,9 @@ bool is_harmless_name(std::string_view name) {
     return throws || std::ranges::binary_search(kHarmless, name) || std::ranges::any_of(kHarmlessBeginnings, begins);
 }
 
+constexpr auto kNoStatic =
+    "the symbols of the program's static variables were stripped, so what robots share is not known: link it without "
+    "-Wl,-x";
 constexpr auto kNamelessOfThreads = "each thread has its own variables (thread_local), whose symbols were stripped";
 
 /// Whether there are variables of threads that the symbol table does not have: the linker leaves out local symbols with
@@ -247,6 +250,9 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
     }
     if (has_nameless_variables_of_threads(symbols)) {
         return kNamelessOfThreads;
+    }
+    if (!symbols.has_static) {
+        return kNoStatic;
     }
     for (std::string const& name : symbols.imports) {
         if (!is_harmless_name(name) && !is_of_simulator_or_mathematical(name)) {

@@ -291,6 +291,18 @@ def test_stripped_program_takes_its_steps_one_after_the_other(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("name", COMPILERS)
+@pytest.mark.parametrize("flags", [("-Wl,-x",), ("-Wl,-x", "-flto"), ("-Wl,-X", "-Wl,--gc-sections"), ("-O3", "-flto")])
+def test_program_without_symbols_of_static_variables_takes_its_steps_one_after_the_other(
+    name: str, flags: tuple[str, ...], tmp_path: Path
+) -> None:
+    program = compile_program(tmp_path / "program", PROGRAMS / "many_threads.c", compiler=name, flags=flags)
+    result = run_robots(program, tmp_path, 2, "nothing")
+    said = "one after the other: the symbols of the program's static variables were stripped"
+    assert (said in result.output) == ("-Wl,-x" in flags)
+    assert ("robots take their steps on all of them" in result.output) == ("-Wl,-x" not in flags)
+
+
+@pytest.mark.parametrize("name", COMPILERS)
 def test_programs_of_each_compiler_have_threads(name: str, tmp_path: Path) -> None:
     """clang calls bcmp() in place of memcmp() and strcmp(), and stpcpy() in place of sprintf()."""
     program = compile_program(tmp_path / "program", PROGRAMS / "many_threads.c", compiler=name)
