@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "process/crash_handler.hpp"
@@ -71,8 +74,27 @@ void note_outside_of_export(char const* function) {
                                    "{}() has no effect outside of callback_export_data", function);
 }
 
-void set_value(char const* function, char const* name, ColumnType type, CellValue value) {
+/// Whether the value is for the column behind the last one, as it usually is.
+bool is_for_next_column(DataExport const& data, char const* name, ColumnType type) {
+    if (!data.filling || data.next_column >= data.columns.size()) {
+        return false;
+    }
+    auto const& next = data.columns[data.next_column];
+    return next.type == type && std::strcmp(next.name.c_str(), name) == 0;
+}
+
+/// `Value`: an alternative of CellValue.
+template <class Value>
+void set_value(char const* function, char const* name, ColumnType type, Value value) {
     check_call(function, name);
+    if constexpr (std::is_arithmetic_v<Value>) {
+        if (DataExport& data = context.services->data; is_for_next_column(data, name, type)) [[likely]] {
+            data.row.values[data.next_column] = value;
+            data.was_set[data.next_column] = true;
+            ++data.next_column;
+            return;
+        }
+    }
     without_exceptions([&] {
         DataExport& data = context.services->data;
         if (!data.filling) {

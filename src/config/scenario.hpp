@@ -86,7 +86,7 @@ struct OutputConfig {
     RowTiming row_timing = RowTiming::multiples;
     std::optional<std::vector<std::string>> fields;      // data_logger_fields; absent: all columns
     std::optional<std::vector<std::string>> categories;  // data_logger_category; absent: all categories
-    std::int64_t flush_row_count = 1048576;              // rows per record batch
+    std::int64_t flush_row_count = 65536;                // rows per record batch
     bool led_column = false;                             // data_logger_led: adds led_rgb, the head LED as 0xRRGGBB
     std::string message_log;                             // file; empty: none
     bool enable_console_logging = false;

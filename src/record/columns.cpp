@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "base/error.hpp"
@@ -18,7 +19,6 @@
 #include "base/nearest_name.hpp"
 #include "base/rounded_time.hpp"
 #include "base/utf8.hpp"
-#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -50,12 +50,16 @@ struct UserColumnType {
 
 namespace {
 
+/// Cells that are handed to a builder together: their bits of validity are then set at once.
+constexpr std::size_t kRowsAtOnce = 256;
+
 template <class Builder, auto Member>
 Status append_member(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
-    auto& numbers = static_cast<Builder&>(builder);
-    ARROW_RETURN_NOT_OK(numbers.Reserve(std::ssize(rows)));
-    for (ObjectRow const& row : rows) {
-        numbers.UnsafeAppend(row.*Member);
+    std::array<typename Builder::value_type, kRowsAtOnce> values;
+    for (; !rows.empty(); rows = rows.subspan(std::min(rows.size(), kRowsAtOnce))) {
+        auto const some = rows.first(std::min(rows.size(), kRowsAtOnce));
+        std::transform(some.begin(), some.end(), values.begin(), [](ObjectRow const& row) { return row.*Member; });
+        ARROW_RETURN_NOT_OK(static_cast<Builder&>(builder).AppendValues(values.data(), std::ssize(some)));
     }
     return Status::OK();
 }
@@ -90,8 +94,9 @@ Status append_ticks(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
 Status append_time(ArrayBuilder& builder, std::span<ObjectRow const> rows) {
     auto& times = static_cast<arrow::DoubleBuilder&>(builder);
     ARROW_RETURN_NOT_OK(times.Reserve(std::ssize(rows)));
-    for (ObjectRow const& row : rows) {
-        times.UnsafeAppend(rounded_to_ns(row.time_s));
+    double const time_s = rounded_to_ns(rows.front().time_s);  // of all
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        times.UnsafeAppend(time_s);
     }
     return Status::OK();
 }
@@ -270,15 +275,16 @@ std::vector<std::string> kept_names(std::vector<std::string> names,
 
 }  // namespace
 
-Columns::Columns(DataFileOptions const& options) : user_column_count_(options.user_columns.size()) {
+Columns::Columns(DataFileOptions const& options, arrow::MemoryPool* memory)
+    : user_column_count_(options.user_columns.size()) {
     auto const available = enabled_built_ins(options);
     auto const kept = kept_names(checked_names(available, options.user_columns), options.fields);
     auto const is_kept = [&kept](std::string_view name) {
         return std::find(kept.begin(), kept.end(), name) != kept.end();
     };
-    auto const new_cells = [this](std::string const& name, std::shared_ptr<arrow::DataType> const& type) {
+    auto const new_cells = [this, memory](std::string const& name, std::shared_ptr<arrow::DataType> const& type) {
         fields_.push_back(arrow::field(replace_malformed(name), type));
-        return arrow::MakeBuilder(type, table_memory()).ValueOrDie();  // can fail for unknown types only
+        return arrow::MakeBuilder(type, memory).ValueOrDie();  // can fail for unknown types only
     };
 
     for (auto const* column : available) {
@@ -297,11 +303,25 @@ Columns::Columns(DataFileOptions const& options) : user_column_count_(options.us
 
 Status Columns::append(std::span<ObjectRow const> rows, std::span<CellValue const> user) {
     assert(user.size() == rows.size() * user_column_count_);
+    if (auto const rows_ahead = std::exchange(taken_rows_, 0); rows_ahead > 0) {
+        ARROW_RETURN_NOT_OK(reserve(rows_ahead));
+    }
     for (auto& [column, cells] : built_ins_) {
         ARROW_RETURN_NOT_OK(column->append(*cells, rows));
     }
     for (auto& [type, index, cells] : users_) {
         ARROW_RETURN_NOT_OK(type->append(*cells, {.cells = user.subspan(index), .width = user_column_count_}));
+    }
+    return Status::OK();
+}
+
+/// Memory for so many rows, which otherwise grows by halves that are copied.
+Status Columns::reserve(std::int64_t row_count) {
+    for (auto& column : built_ins_) {
+        ARROW_RETURN_NOT_OK(column.cells->Reserve(row_count));
+    }
+    for (auto& column : users_) {
+        ARROW_RETURN_NOT_OK(column.cells->Reserve(row_count));
     }
     return Status::OK();
 }
@@ -314,6 +334,7 @@ arrow::Result<arrow::ArrayVector> Columns::take() {
     for (auto& column : users_) {
         ARROW_RETURN_NOT_OK(column.cells->Finish(&arrays.emplace_back()));
     }
+    taken_rows_ = arrays.front()->length();
     return arrays;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <arrow/builder.h>
+#include <arrow/memory_pool.h>
 #include <arrow/result.h>
 #include <arrow/type.h>
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -21,8 +23,8 @@ struct UserColumnType;  // how cells of a user column are stored
 class Columns {
 public:
     /// Columns in the order of the file. Warns about unknown columns in `options.fields`. Throws ConfigError if a name
-    /// is empty or repeated, or if `options.fields` leaves no column.
-    explicit Columns(DataFileOptions const& options);
+    /// is empty or repeated, or if `options.fields` leaves no column. `memory` outlives this and the cells.
+    Columns(DataFileOptions const& options, arrow::MemoryPool* memory);
 
     arrow::FieldVector const& fields() const { return fields_; }
 
@@ -43,10 +45,13 @@ private:
         std::unique_ptr<arrow::ArrayBuilder> cells;
     };
 
+    arrow::Status reserve(std::int64_t row_count);
+
     arrow::FieldVector fields_;
     std::vector<BuiltIn> built_ins_;
     std::vector<User> users_;
     std::size_t user_column_count_;
+    std::int64_t taken_rows_ = 0;  // at the last time: about as many will come
 };
 
 }  // namespace pogosim

@@ -17,6 +17,7 @@
 
 #include "base/scratch_file.hpp"
 #include "record/leftover.hpp"
+#include "record/table_memory.hpp"
 #include "record/table_writer.hpp"
 
 namespace pogosim {
@@ -106,9 +107,9 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(LockedFile const
 
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::start(LockedFile const& unfinished,
                                                                  std::shared_ptr<arrow::Schema> const& schema,
-                                                                 TableFormat format) {
+                                                                 arrow::MemoryPool* memory, TableFormat format) {
     ARROW_ASSIGN_OR_RAISE(auto file, make(unfinished));
-    ARROW_ASSIGN_OR_RAISE(file->writer_, make_table_writer(format, file->stream_, schema));
+    ARROW_ASSIGN_OR_RAISE(file->writer_, make_table_writer(format, file->stream_, schema, memory));
     return file;
 }
 
@@ -136,7 +137,7 @@ arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::copy_with(std::shared
     // A file without a name is removed with the process.
     scratch_.reset();
     path_.clear();
-    ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema, format));
+    ARROW_ASSIGN_OR_RAISE(auto copy, start(unfinished, schema, table_memory(), format));
     for (int i = 0; i < reader->num_record_batches(); ++i) {
         ARROW_ASSIGN_OR_RAISE(auto const batch, reader->ReadRecordBatch(i));
         ARROW_RETURN_NOT_OK(copy->append(*batch));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <arrow/ipc/writer.h>
+#include <arrow/memory_pool.h>
 #include <arrow/record_batch.h>
 #include <arrow/result.h>
 #include <sys/types.h>
@@ -25,9 +26,10 @@ public:
     static std::filesystem::path path_beside(std::filesystem::path const& unfinished);
 
     /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes a
-    /// file that a killed run has left there, but no other file.
+    /// file that a killed run has left there, but no other file. `memory` outlives this.
     static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,
                                                               std::shared_ptr<arrow::Schema> const& schema,
+                                                              arrow::MemoryPool* memory,
                                                               TableFormat format = TableFormat::feather);
 
     /// Removes the file, unless it has taken its place.

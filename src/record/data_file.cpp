@@ -6,6 +6,7 @@
 #include "record/columns.hpp"
 #include "record/complete_file.hpp"
 #include "record/table_file.hpp"
+#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -17,15 +18,17 @@ constexpr TableKind kKind{
 }  // namespace
 
 struct DataFile::Impl {
+    TableMemory memory;
     Columns columns;
     TableFile table;
 
     Impl(DataFileOptions const& options, LockedFile file)
-        : columns(options),
+        : columns(options, &memory),
           table({.kind = kKind,
                  .path = options.path,
                  .flush_row_count = options.flush_row_count,
-                 .metadata = options.metadata},
+                 .metadata = options.metadata,
+                 .memory = &memory},
                 std::move(file), columns.fields(), [this] { return columns.take(); }) {}
 };
 

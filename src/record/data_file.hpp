@@ -25,7 +25,7 @@ struct DataFileOptions {
     bool subpart_column = false;                       // adds subpart_id
     bool led_column = false;                           // adds led_rgb
     bool tension_column = false;                       // adds tension
-    std::int64_t flush_row_count = 1048576;            // rows per record batch, > 0
+    std::int64_t flush_row_count = 65536;              // rows per record batch, > 0
     std::vector<std::pair<std::string, std::string>> metadata{};  // of the schema, UTF-8
 };
 

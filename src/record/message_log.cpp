@@ -23,9 +23,10 @@ constexpr std::string_view kNobodyInReach = "nobody_in_reach";
 
 /// Appends the cells of a robot, or nulls.
 struct RobotCells {
-    arrow::Int32Builder index{table_memory()};
-    arrow::Int32Builder id{table_memory()};
-    arrow::StringBuilder category{table_memory()};
+    arrow::MemoryPool* memory;
+    arrow::Int32Builder index{memory};
+    arrow::Int32Builder id{memory};
+    arrow::StringBuilder category{memory};
 
     Status append(LoggedRobot const& robot) {
         ARROW_RETURN_NOT_OK(index.Append(robot.index));
@@ -41,23 +42,24 @@ struct RobotCells {
 };
 
 struct Cells {
-    arrow::DoubleBuilder time{table_memory()};
-    arrow::Int64Builder step{table_memory()};
-    arrow::Int64Builder message{table_memory()};
-    RobotCells sender;
-    arrow::Int8Builder sender_faces{table_memory()};
-    arrow::StringBuilder kind{table_memory()};
-    arrow::BinaryBuilder payload{table_memory()};
-    arrow::Int32Builder message_bytes{table_memory()};
-    arrow::FloatBuilder send_probability{table_memory()};
-    arrow::Int32Builder cluster_size{table_memory()};
-    RobotCells receiver;
-    arrow::FloatBuilder distance{table_memory()};
-    arrow::Int8Builder emitters{table_memory()};
-    arrow::Int8Builder receiver_faces{table_memory()};
-    arrow::FloatBuilder probability{table_memory()};
-    arrow::StringBuilder outcome{table_memory()};
-    arrow::Int8Builder copies{table_memory()};
+    arrow::MemoryPool* memory;
+    arrow::DoubleBuilder time{memory};
+    arrow::Int64Builder step{memory};
+    arrow::Int64Builder message{memory};
+    RobotCells sender{memory};
+    arrow::Int8Builder sender_faces{memory};
+    arrow::StringBuilder kind{memory};
+    arrow::BinaryBuilder payload{memory};
+    arrow::Int32Builder message_bytes{memory};
+    arrow::FloatBuilder send_probability{memory};
+    arrow::Int32Builder cluster_size{memory};
+    RobotCells receiver{memory};
+    arrow::FloatBuilder distance{memory};
+    arrow::Int8Builder emitters{memory};
+    arrow::Int8Builder receiver_faces{memory};
+    arrow::FloatBuilder probability{memory};
+    arrow::StringBuilder outcome{memory};
+    arrow::Int8Builder copies{memory};
 
     struct Column {
         char const* name;
@@ -145,14 +147,16 @@ struct Cells {
 }  // namespace
 
 struct MessageLog::Impl {
-    Cells cells;
+    TableMemory memory;
+    Cells cells{&memory};
     TableFile table;
 
     Impl(MessageLogOptions const& options, LockedFile file)
         : table({.kind = kKind,
                  .path = options.path,
                  .flush_row_count = options.flush_row_count,
-                 .metadata = options.metadata},
+                 .metadata = options.metadata,
+                 .memory = &memory},
                 std::move(file), cells.fields(), [this] { return cells.take(); }) {}
 };
 

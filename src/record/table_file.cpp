@@ -23,7 +23,6 @@
 #include "base/utf8.hpp"
 #include "record/complete_file.hpp"
 #include "record/metadata_beside.hpp"
-#include "record/table_memory.hpp"
 #include "record/table_writer.hpp"
 #include "record/unfinished_file.hpp"
 
@@ -114,13 +113,18 @@ struct Pieces {
         row_count += batch->num_rows();
     }
 
-    void drop_first() {
-        row_count -= batches.front()->num_rows();
-        batches.erase(batches.begin());
+    /// The first `count` rows, up to those of the first piece.
+    void drop_first(std::int64_t count) {
+        row_count -= count;
+        if (count < batches.front()->num_rows()) {
+            batches.front() = batches.front()->Slice(count);
+        } else {
+            batches.erase(batches.begin());
+        }
     }
 
     /// All rows in one batch.
-    arrow::Result<std::shared_ptr<arrow::RecordBatch>> joined() const {
+    arrow::Result<std::shared_ptr<arrow::RecordBatch>> joined(arrow::MemoryPool* memory) const {
         if (batches.size() == 1) {
             return batches.front();
         }
@@ -131,7 +135,7 @@ struct Pieces {
             for (auto const& batch : batches) {
                 parts.push_back(batch->column(i));
             }
-            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts, table_memory()));
+            ARROW_ASSIGN_OR_RAISE(columns.emplace_back(), arrow::Concatenate(parts, memory));
         }
         return arrow::RecordBatch::Make(schema, row_count, std::move(columns));
     }
@@ -174,9 +178,10 @@ private:
 
 constexpr std::uint64_t kBytesPerCell = 8;
 constexpr std::int64_t kMostUnsavedRows = 1 << 20;  // a bound on memory
-// When there are this many rows, those of whole moments become a piece: builders that grow further double their memory,
-// which the system has to clear each time.
-constexpr std::int64_t kMostBufferedRows = 4096;
+// This many rows are written to the unfinished file at the end of a moment even if no save is due, without waiting for
+// the disk: their memory is then used again, which costs less than memory that the system has to clear. Fewer at a time
+// would cost more: each column of each piece is compressed for itself.
+constexpr std::int64_t kMostBufferedRows = 65536;
 
 }  // namespace
 
@@ -187,6 +192,7 @@ struct TableFile::Impl {
     LockedFile file;
     pid_t owner = getpid();
     std::int64_t flush_row_count;
+    arrow::MemoryPool* memory;
     TakeCells take_cells;
     std::shared_ptr<arrow::Schema> schema;
     std::shared_ptr<arrow::Schema> final_schema;  // of the complete file: with metadata added during the run
@@ -202,7 +208,8 @@ struct TableFile::Impl {
     std::int64_t buffered_rows = 0;
     std::int64_t saved_rows = 0;
     double saved_time_s = 0.0;
-    bool open = false;  // also false after the first failure
+    bool awaits_sync = false;  // some of the saved rows
+    bool open = false;         // also false after the first failure
 
     Impl(TableFileOptions const& options, LockedFile locked, arrow::FieldVector const& fields, TakeCells take)
         : kind(options.kind),
@@ -210,11 +217,12 @@ struct TableFile::Impl {
           format(format_of(options.path)),
           file(std::move(locked)),
           flush_row_count(options.flush_row_count),
+          memory(options.memory),
           take_cells(std::move(take)) {
         assert(flush_row_count > 0);
         schema = arrow::schema(fields, make_metadata(options));
         final_schema = schema;
-        auto started = UnfinishedFile::start(file.descriptor(), schema);
+        auto started = UnfinishedFile::start(file.descriptor(), schema, memory);
         if (!started.ok()) {
             fail(kind, path, reason_of(started.status()));
         }
@@ -262,21 +270,46 @@ struct TableFile::Impl {
     }
 
     Status save() {
-        ARROW_RETURN_NOT_OK(cut());
-        if (unsaved.row_count == 0) {
+        if (!has_rows_to_save()) {
             return Status::OK();
         }
         auto const begin = SaveClock::Clock::now();
-        while (!unsaved.batches.empty()) {
-            auto const piece = unsaved.batches.front();
-            ARROW_RETURN_NOT_OK(unfinished->append(*piece));
-            unsaved.drop_first();
-            note_saved_until(saved_rows + piece->num_rows());
-        }
+        ARROW_RETURN_NOT_OK(cut());
+        ARROW_RETURN_NOT_OK(append_to_unfinished(row_count));
         if (clock.run_is_long()) {
             unfinished->sync();
         }
+        awaits_sync = false;
         clock.saved(begin);
+        return Status::OK();
+    }
+
+    std::int64_t new_row_count() const { return buffered_rows + unsaved.row_count; }
+    bool has_rows_to_save() const { return new_row_count() > 0 || awaits_sync; }
+
+    /// Writes the rows of whole moments to the unfinished file, without waiting for the disk. At the end of a moment: a
+    /// piece that the end of a batch cut off there is written without its last moment, whose other rows stay where they
+    /// are, so that the next batch is one piece.
+    Status append_whole_moments() {
+        if (unsaved.row_count < kMostBufferedRows) {
+            ARROW_RETURN_NOT_OK(cut());
+        }
+        std::int64_t const cut_rows = row_count - buffered_rows;
+        auto const last = std::ranges::find_if(unsaved_moments.rbegin(), unsaved_moments.rend(),
+                                               [&](Moment const& moment) { return moment.row_end <= cut_rows; });
+        return last != unsaved_moments.rend() ? append_to_unfinished(last->row_end) : Status::OK();
+    }
+
+    /// Up to `row_end` of the run.
+    Status append_to_unfinished(std::int64_t row_end) {
+        while (saved_rows < row_end) {
+            auto const piece = unsaved.batches.front();
+            std::int64_t const count = std::min(piece->num_rows(), row_end - saved_rows);
+            ARROW_RETURN_NOT_OK(unfinished->append(*piece->Slice(0, count)));
+            awaits_sync = true;
+            unsaved.drop_first(count);
+            note_saved_until(saved_rows + count);
+        }
         return Status::OK();
     }
 
@@ -332,12 +365,12 @@ struct TableFile::Impl {
     /// Moves rows to the complete file.
     Status add_to_complete(std::shared_ptr<arrow::Schema> const& complete_schema) {
         if (!complete) {
-            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, complete_schema));
+            ARROW_ASSIGN_OR_RAISE(complete, CompleteFile::start(file, complete_schema, memory));
         }
         if (uncompleted.row_count == 0) {
             return Status::OK();
         }
-        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.joined());
+        ARROW_ASSIGN_OR_RAISE(auto const batch, uncompleted.joined(memory));
         ARROW_RETURN_NOT_OK(complete->append(*batch));
         uncompleted = {};
         return Status::OK();
@@ -452,11 +485,10 @@ void TableFile::count_rows(double time_s, std::size_t count, Status const& added
 }
 
 void TableFile::save_if_due() {
-    bool const has_new_rows = impl_->buffered_rows + impl_->unsaved.row_count > 0;
-    if (has_new_rows && impl_->clock.is_due()) {
+    if (impl_->has_rows_to_save() && impl_->clock.is_due()) {
         save();
-    } else if (impl_->buffered_rows >= kMostBufferedRows && impl_->is_writable()) {
-        impl_->check([&] { return impl_->cut(); });
+    } else if (impl_->new_row_count() >= kMostBufferedRows && impl_->is_writable()) {
+        impl_->check([&] { return impl_->append_whole_moments(); });
     }
 }
 

@@ -7,6 +7,7 @@
 // The contents of the complete one depend on the rows alone, not on the clock.
 #pragma once
 
+#include <arrow/memory_pool.h>
 #include <arrow/result.h>
 #include <arrow/status.h>
 #include <arrow/type.h>
@@ -37,6 +38,7 @@ struct TableFileOptions {
     std::string path;  // as the user wrote it
     std::int64_t flush_row_count;
     std::vector<std::pair<std::string, std::string>> metadata;  // of the schema, UTF-8
+    arrow::MemoryPool* memory;                                  // for its rows; outlives the table
 };
 
 /// Every failure to write throws OutputError naming the path and the system's reason; nothing is lost silently. In a

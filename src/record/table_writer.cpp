@@ -24,10 +24,10 @@ namespace {
 using Writer = std::shared_ptr<arrow::ipc::RecordBatchWriter>;
 
 Result<Writer> make_feather_writer(std::shared_ptr<arrow::io::OutputStream> const& stream,
-                                   std::shared_ptr<arrow::Schema> const& schema) {
+                                   std::shared_ptr<arrow::Schema> const& schema, arrow::MemoryPool* memory) {
     auto options = arrow::ipc::IpcWriteOptions::Defaults();
     ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::ZSTD));
-    options.memory_pool = table_memory();
+    options.memory_pool = memory;
     options.use_threads = false;  // the process stays single-threaded
     return arrow::ipc::MakeFileWriter(stream, schema, options);
 }
@@ -112,10 +112,10 @@ Result<MakeParquetWriter> load_parquet() {
 }  // namespace
 
 Result<Writer> make_table_writer(TableFormat format, std::shared_ptr<arrow::io::OutputStream> const& stream,
-                                 std::shared_ptr<arrow::Schema> const& schema) {
+                                 std::shared_ptr<arrow::Schema> const& schema, arrow::MemoryPool* memory) {
     switch (format) {
         case TableFormat::feather:
-            return make_feather_writer(stream, schema);
+            return make_feather_writer(stream, schema, memory);
         case TableFormat::csv:
             return CsvWriter::make(stream, *schema);
         case TableFormat::parquet:

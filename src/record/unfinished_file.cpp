@@ -6,8 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "record/table_memory.hpp"
-
 namespace pogosim {
 
 namespace {
@@ -28,11 +26,12 @@ std::shared_ptr<arrow::Schema> marked(arrow::Schema const& schema) {
 }  // namespace
 
 arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descriptor,
-                                                                     std::shared_ptr<arrow::Schema> const& schema) {
+                                                                     std::shared_ptr<arrow::Schema> const& schema,
+                                                                     arrow::MemoryPool* memory) {
     std::unique_ptr<UnfinishedFile> file(new UnfinishedFile(descriptor));
     auto options = arrow::ipc::IpcWriteOptions::Defaults();
     ARROW_ASSIGN_OR_RAISE(options.codec, arrow::util::Codec::Create(arrow::Compression::LZ4_FRAME));
-    options.memory_pool = table_memory();
+    options.memory_pool = memory;
     options.use_threads = false;
     ARROW_RETURN_NOT_OK(file->stream_->Write(kFileMagic.data(), kFileMagic.size()));
     ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeStreamWriter(file->stream_, marked(*schema), options));

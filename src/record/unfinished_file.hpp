@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "record/descriptor_stream.hpp"
+#include "record/table_memory.hpp"
 
 namespace pogosim {
 
@@ -25,9 +26,10 @@ inline constexpr auto kIncompleteKey = "incomplete";
 
 class UnfinishedFile {
 public:
-    /// Empties the open file and writes its head. `schema` is that of the complete file.
+    /// Empties the open file and writes its head. `schema` is that of the complete file; `memory` outlives this.
     static arrow::Result<std::unique_ptr<UnfinishedFile>> start(int descriptor,
-                                                                std::shared_ptr<arrow::Schema> const& schema);
+                                                                std::shared_ptr<arrow::Schema> const& schema,
+                                                                arrow::MemoryPool* memory = table_memory());
 
     /// Appends rows. On failure, the file is unchanged.
     arrow::Status append(arrow::RecordBatch const& batch);

@@ -32,15 +32,13 @@ std::int32_t packed_rgb(Rgb color) {
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// A rigid body has a place and a heading, a membrane the place of its first body, a wall its centre and heading 0.
-ObjectRow row_of(World const& world, Object const& object, double time_s, std::optional<std::int64_t> ticks) {
-    ObjectRow row{.time_s = time_s,
-                  .category = world.categories[object.category].name,
-                  .id = static_cast<std::int32_t>(object.id),
-                  .ticks = ticks,
-                  .x_mm = kNoValue,
-                  .y_mm = kNoValue,
-                  .angle_rad = kNoValue,
-                  .led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0};
+/// Fills a fresh row in its place: to copy one that has just been written takes longer than to write it.
+void fill_row(ObjectRow& row, World const& world, Object const& object, std::span<float const> tension_n) {
+    row.category = world.categories[object.category].name;
+    row.id = static_cast<std::int32_t>(object.id);
+    row.x_mm = row.y_mm = row.angle_rad = kNoValue;
+    row.led_rgb = object.robot != kNone ? packed_rgb(world.robots.led[object.robot][0]) : 0;
+    row.tension_n = object.body != kNone ? tension_n[object.body] : 0.0F;
     if (object.body == kNone) {
         row.x_mm = object.fixed_mm.x;
         row.y_mm = object.fixed_mm.y;
@@ -53,7 +51,6 @@ ObjectRow row_of(World const& world, Object const& object, double time_s, std::o
     if (object.body_count == 1) {
         row.angle_rad = wrap_angle(world.bodies.heading_rad[object.body]);
     }
-    return row;
 }
 
 /// Its rows are followed by those of its subparts.
@@ -220,11 +217,13 @@ void Recorder::write_table() {
     };
     for (std::size_t row = 0; row < count; ++row) {
         Object const& object = world_.objects[table_.object[row]];
-        built_in_.push_back(row_of(world_, object, row_time_s_, ticks_of(object)));
-        built_in_.back().tension_n = object.body != kNone ? tension_n[object.body] : 0.0F;
+        ObjectRow& built_in = built_in_.emplace_back();
+        built_in.time_s = row_time_s_;
+        built_in.ticks = ticks_of(object);
+        fill_row(built_in, world_, object, tension_n);
         if (has_subparts(world_.categories[object.category])) {
             write_until(row + 1);
-            record_subparts(object, built_in_.back());
+            record_subparts(object, built_in);
         }
     }
     write_until(count);

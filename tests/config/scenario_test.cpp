@@ -91,7 +91,7 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(o.save_data_period_s, 1.0);
     EXPECT_EQ(o.fields, std::nullopt);
     EXPECT_EQ(o.categories, std::nullopt);
-    EXPECT_EQ(o.flush_row_count, 1048576);
+    EXPECT_EQ(o.flush_row_count, 65536);
     EXPECT_FALSE(o.led_column || o.enable_console_logging);
     EXPECT_EQ(o.console_filename, "console.txt");
     EXPECT_EQ(o.message_log, "");

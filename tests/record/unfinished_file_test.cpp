@@ -65,6 +65,26 @@ TEST_F(CompletedDataFile, HasTheSameBytesWhereverItWasSavedInBetween) {
     }
 }
 
+/// Many rows fill memory long before the clock asks for a save.
+TEST_F(UnfinishedDataFile, GetsManyRowsBeforeASaveIsDue) {
+    DataFile file({.path = path("a.feather"), .user_columns = kUserColumns});
+    constexpr int kRobots = 1000;
+    std::vector<ObjectRow> rows(kRobots);
+    std::vector<CellValue> const cells(kRobots * kUserColumns.size());
+    std::int64_t written = 0;
+    for (int moment = 0; moment < 200; ++moment) {
+        for (ObjectRow& row : rows) {
+            row = {.time_s = 0.1 * moment, .category = "robots"};
+        }
+        file.append(rows, cells);
+        file.save_if_due();
+        written += kRobots;
+        std::int64_t const saved = read_unfinished(path("a.feather"))->num_rows();
+        EXPECT_EQ(saved % kRobots, 0) << "rows of whole moments";
+        EXPECT_LE(written - saved, 66'000);
+    }
+}
+
 TEST_F(UnfinishedDataFile, HoldsAllRowsThatWereSaved) {
     DataFile file(
         {.path = path("a.feather"), .user_columns = kUserColumns, .metadata = {{"configuration", "seed: 1"}}});
