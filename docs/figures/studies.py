@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +17,9 @@ from quotes import Quote, paragraph
 
 sys.path += [str(ROOT / "examples" / "learning"), str(ROOT / "bench")]
 
+ENGINES = ("box2d", "disk")
 ROBOTS = 300  # of the comparison of engines
+SEEDS = 6
 TIMELESS = 4  # of its columns, the last one is a time
 
 
@@ -128,6 +130,23 @@ def engine_table(title: str, arenas: Sequence[str], seeds: int, time_step_s: flo
     return Quote(tuple(lines))
 
 
+def compared(first: str, columns: Sequence[str], rows: Mapping[tuple[str, str], Callable[[int], list[float]]]) -> Quote:
+    """Compare runs: means and standard deviations between SEEDS seeds, in Markdown.
+
+    Args:
+        first: Title of the first column.
+        columns: Titles of the columns behind the engine's.
+        rows: What stands in the first column, and the engine; the figures of a run with a seed.
+    """
+    from compare_engines import with_spread
+
+    lines = [f"| {first} | engine | {' | '.join(columns)} |", "|---" * (len(columns) + 2) + "|"]
+    for (name, engine), figures in rows.items():
+        runs = np.array([figures(seed)[: len(columns)] for seed in range(1, SEEDS + 1)])
+        lines.append(f"| {name} | {engine} | {' | '.join(map(with_spread, runs.mean(0), runs.std(0)))} |")
+    return Quote(tuple(lines))
+
+
 def compare_engines_a_little(_folder: Path) -> str:
     """Run few robots with both engines."""
     import compare_engines
@@ -145,8 +164,29 @@ def compare_both_engines(_folder: Path) -> dict[str, Picture | Quote]:
     }
 
 
+def compare_shapes_a_little(_folder: Path) -> str:
+    """Push boxes and others for a few seconds with both engines."""
+    import compare_shapes
+
+    rows = [compare_shapes.figures(engine, 1, 0.01, duration_s=4.0)[:-1] for engine in ENGINES]
+    return fingerprint(pd.DataFrame(np.round(rows, 9)).rename(columns=str))
+
+
+def compare_shapes_in_both(_folder: Path) -> dict[str, Picture | Quote]:
+    """Push boxes and others as the page says."""
+    import compare_shapes
+
+    rows = {
+        (str(ms), engine): partial(compare_shapes.figures, engine, time_step_s=ms / 1000)
+        for ms in (1, 10)
+        for engine in ENGINES
+    }
+    return {"physics.md: boxes": compared("step, ms", compare_shapes.COLUMNS[:-1], rows)}
+
+
 STUDIES = {
     "engines": Study("physics.md: engines", (), compare_engines_a_little, compare_both_engines),
+    "boxes": Study("physics.md: boxes", (), compare_shapes_a_little, compare_shapes_in_both),
     "learning": Study("learning.md: returns", ("learning.png",), learn_a_little, learn),
     **{
         f"tuning_{scene}": Study(

@@ -29,7 +29,7 @@ def test_pictures_and_texts_are_what_the_tree_makes_today(script: str, tmp_path:
     assert differences(today) == [], "to renew: .venv/bin/python docs/figures/all.py; then look at the pictures"
 
 
-@pytest.mark.parametrize("study", ["engines", "learning"])
+@pytest.mark.parametrize("study", ["engines", "boxes", "learning"])
 def test_numbers_of_studies_are_those_of_the_tree(study: str) -> None:
     """Those of tuning and validation are compared by their own tests, which run a little of them anyway."""
     assert check(study) == [], "to renew: .venv/bin/python docs/figures/all.py"

@@ -54,6 +54,7 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
         ("compare_engines", ["--robots", "-1"]),
         ("compare_engines", ["--time-step", "nan"]),
         ("compare_engines", ["no_such_arena"]),
+        ("compare_shapes", ["--seeds", "0"]),
         ("own_variables", ["many"]),
         ("reception_profile", ["--seeds", "0"]),
         ("reception_profile", ["--time", "inf"]),
