@@ -34,11 +34,11 @@
 #include "process/process.hpp"
 #include "process/program_image.hpp"
 #include "sim/check_run.hpp"
+#include "sim/files_of_run.hpp"
 #include "sim/flash_state.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/kept_files.hpp"
 #include "sim/simulation.hpp"
-#include "sim/used_files.hpp"
 #include "sim/window_module.hpp"
 
 namespace {

@@ -25,7 +25,7 @@ enum class LogFormat { dated, minimal };
 /// Which copies of a message that a wall or a membrane sends arrive.
 enum class WallCopies { one_per_face, original };
 /// When rows are recorded: at the first step at or after each multiple of the period, or as in the original simulator,
-/// see sim/row_times.hpp.
+/// see sim/due_times.hpp.
 enum class RowTiming { multiples, original };
 
 /// Largest length and coordinate, mm. A float still tells 0.06 mm apart there.

@@ -13,7 +13,7 @@
 #include "config/scenario.hpp"
 #include "firmware/firmware_program.hpp"
 #include "robot/context.hpp"
-#include "sim/used_files.hpp"
+#include "sim/files_of_run.hpp"
 
 using namespace pogosim;
 

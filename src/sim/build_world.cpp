@@ -24,11 +24,11 @@
 #include "interface/pogobase_inside.hpp"
 #include "light/lighting.hpp"
 #include "physics/coinciding_centres.hpp"
-#include "sim/imported_objects.hpp"
 #include "sim/magnetometers.hpp"
 #include "sim/make_links.hpp"
 #include "sim/make_membrane.hpp"
 #include "sim/place_objects.hpp"
+#include "sim/standing_objects.hpp"
 #include "world/assert_world.hpp"
 
 namespace pogosim {

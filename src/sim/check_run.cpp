@@ -20,11 +20,10 @@
 #include "process/without_effects.hpp"
 #include "render/png_file.hpp"
 #include "sim/build_world.hpp"
+#include "sim/files_of_run.hpp"
 #include "sim/flash_state.hpp"
 #include "sim/magnetometers.hpp"
-#include "sim/output_files.hpp"
 #include "sim/pictures.hpp"
-#include "sim/used_files.hpp"
 
 namespace pogosim {
 

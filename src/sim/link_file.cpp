@@ -1,4 +1,4 @@
-#include "sim/link_file.hpp"
+#include "sim/make_links.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

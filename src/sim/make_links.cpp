@@ -17,7 +17,6 @@
 #include "base/grid.hpp"
 #include "base/log.hpp"
 #include "config/places.hpp"
-#include "sim/link_file.hpp"
 #include "sim/place_objects.hpp"
 #include "world/link_places.hpp"
 

@@ -23,8 +23,7 @@
 #include "config/places.hpp"
 #include "render/film_file.hpp"
 #include "render/png_file.hpp"
-#include "sim/output_files.hpp"
-#include "sim/used_files.hpp"
+#include "sim/files_of_run.hpp"
 
 namespace pogosim {
 

@@ -10,7 +10,7 @@
 #include "render/frame_lock.hpp"
 #include "render/frame_names.hpp"
 #include "render/picture_writer.hpp"
-#include "sim/multiples.hpp"
+#include "sim/due_times.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "world/world.hpp"
 

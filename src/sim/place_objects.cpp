@@ -4,22 +4,103 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/random.hpp"
 #include "config/find_file.hpp"
 #include "config/places.hpp"
+#include "config/scenario.hpp"
+#include "geometry/outline_survey.hpp"
 #include "record/imported_poses.hpp"
-#include "sim/fixed_objects.hpp"
 #include "sim/lamps_of.hpp"
 #include "sim/make_membrane.hpp"
-#include "sim/place_apart.hpp"
 #include "sim/standing_objects.hpp"
+#include "world/world.hpp"
 
 namespace pogosim {
 
 namespace {
+
+// Categories with their own area or formation.
+
+enum class AreaOverlap { none, partial, full };
+
+/// The part of an area that is in the arena.
+AreaOverlap overlap_with(Arena const& arena, Polygon const& area_mm) {
+    constexpr std::size_t area = 0;
+    constexpr std::size_t outer = 1;
+    std::vector<Polygon> polygons{area_mm};
+    polygons.insert(polygons.end(), arena.polygons.begin(), arena.polygons.end());
+    OutlineSurvey const survey = survey_outlines(polygons);
+    if (survey.crossing) {
+        return AreaOverlap::partial;
+    }
+    bool const holds_walls = std::ranges::find(survey.parent, area) != survey.parent.end();
+    if (survey.parent[area] == outer) {
+        return holds_walls ? AreaOverlap::partial : AreaOverlap::full;
+    }
+    return survey.parent[outer] == area ? AreaOverlap::partial : AreaOverlap::none;
+}
+
+/// Everything outside the arena, as obstacles.
+std::vector<Obstacle> outside_of(Arena const& arena) {
+    // A frame around the arena, cut open along a line from its corner to the corner of the outer wall next to it.
+    Polygon frame = arena.outer();
+    if (signed_area(frame) < 0.0) {
+        std::ranges::reverse(frame);
+    }
+    auto const first = std::ranges::min_element(frame, {}, [](Vec2 corner) { return corner.x + corner.y; });
+    std::rotate(frame.begin(), first, frame.end());
+    frame.push_back(frame.front());
+    Vec2 const size = arena.bounds.size();
+    Vec2 const low = arena.bounds.min - size;
+    Vec2 const high = arena.bounds.max + size;
+    frame.insert(frame.end(), {low, {low.x, high.y}, high, {high.x, low.y}, low});
+    std::vector<Obstacle> obstacles{{.name = "the arena's wall", .line = std::move(frame)}};
+    for (auto hole = arena.polygons.begin() + 1; hole != arena.polygons.end(); ++hole) {
+        obstacles.push_back({.name = "a hole in the arena", .line = *hole});
+    }
+    return obstacles;
+}
+
+/// Places the objects of an entry that has an `own_formation`: inside the part of its area that is in the arena, clear
+/// of the obstacles. One pose per object. Throws ConfigError if they do not fit, or if the area is outside the arena.
+std::vector<Placement> place_apart(Scenario const& scenario, World const& world, ObjectConfig const& object,
+                                   std::vector<Obstacle> obstacles, RandomStream& random) {
+    OwnFormation const& own = object.own_formation;
+    FormationSpec formation = scenario.formation;
+    formation.name = own.name.value_or(formation.name);
+    std::string const where = place_of(scenario, object, ObjectSetting::formation);
+    if (formation.name == kImportedFormation) {
+        throw ConfigError(fmt::format(
+            "{}: the formation 'imported' cannot fill an area; give the category its own initial_formation, or "
+            "poses",
+            where));
+    }
+    std::vector<float> const radii(static_cast<std::size_t>(object.nb), outer_radius_mm(object.spec));
+    Arena const ground = own.area_mm ? make_arena({*own.area_mm}) : world.arena;
+    if (own.area_mm) {
+        AreaOverlap const overlap = overlap_with(world.arena, *own.area_mm);
+        if (overlap == AreaOverlap::none) {
+            throw ConfigError(fmt::format("{}: it lies entirely outside {}", where, arena_text(world.arena)));
+        }
+        if (overlap == AreaOverlap::partial) {
+            std::ranges::move(outside_of(world.arena), std::back_inserter(obstacles));
+        }
+        formation.centre_mm = centroid(*own.area_mm);
+    }
+    try {
+        return own.area_mm ? place(formation, radii, {ground, obstacles, "area", "enlarge the area"}, random)
+                           : place(formation, radii, {ground, obstacles}, random);
+    } catch (FormationError const& error) {
+        throw ConfigError(fmt::format("{}: {}", where, error.what()));
+    }
+}
 
 // The random stream of the formation belongs to no robot; robots have theirs by their index.
 constexpr std::uint64_t kFormationStream = std::uint64_t{3} << 32U;

@@ -14,10 +14,10 @@
 #include "process/crash_handler.hpp"
 #include "record/data_file.hpp"
 #include "robot/controllers.hpp"
-#include "sim/link_record.hpp"
+#include "sim/due_times.hpp"
+#include "sim/link_changes.hpp"
 #include "sim/message_recorder.hpp"
 #include "sim/recorded_rows.hpp"
-#include "sim/row_times.hpp"
 #include "sim/saved_columns.hpp"
 #include "world/world.hpp"
 

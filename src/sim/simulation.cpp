@@ -31,7 +31,6 @@
 #include "sim/make_brains.hpp"
 #include "sim/progress_bar.hpp"
 #include "sim/window_driver.hpp"
-#include "sim/window_setup.hpp"
 
 namespace pogosim {
 

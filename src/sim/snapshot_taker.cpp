@@ -1,11 +1,53 @@
 #include "sim/snapshot_taker.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "device/infrared.hpp"
-#include "sim/body_links.hpp"
+#include "render/snapshot.hpp"
+#include "world/link_places.hpp"
+#include "world/world.hpp"
 
 namespace pogosim {
+
+namespace {
+
+// Links between bodies, for pictures.
+
+constexpr float kLeastTensionN = 1e-6F;  // that is shown: rounding is not
+
+/// The largest tension of all links that do not break.
+float largest_tension_n(std::vector<Link> const& links) {
+    float largest_n = 0.0F;
+    for (Link const& link : links) {
+        if (!link.is_cut && !std::isfinite(link.breaking_n)) {
+            largest_n = std::max(largest_n, std::abs(link.tension_n));
+        }
+    }
+    return largest_n;
+}
+
+/// The links that hold, of categories that are drawn. `from_mm` is in the box of a periodic arena.
+std::vector<BodyLink> drawn_links(World const& world) {
+    std::vector<BodyLink> drawn;
+    float const largest_n = std::max(largest_tension_n(world.links), kLeastTensionN);
+    for (Link const& link : world.links) {
+        if (link.is_cut || !world.link_categories[link.link_category].are_drawn) {
+            continue;
+        }
+        LinkPlaces const ends = places_of_ends(world, link);
+        Vec2 const from_mm = wrapped(world, ends.a_mm);
+        drawn.push_back({.kind = link.kind,
+                         .is_pinned = link.b == kNone,
+                         .from_mm = from_mm,
+                         .to_mm = from_mm + ends.span_mm(),
+                         .load = link.tension_n / (std::isfinite(link.breaking_n) ? link.breaking_n : largest_n)});
+    }
+    return drawn;
+}
+
+}  // namespace
 
 SnapshotTaker::SnapshotTaker(World const& world, Lighting const& lighting)
     : world_(world), lighting_(lighting), scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}

@@ -1,4 +1,4 @@
-// Objects where they stand at time 0, to find those that overlap.
+// Objects where they stand at time 0, and warnings of those that overlap.
 #pragma once
 
 #include <cstddef>
@@ -54,5 +54,16 @@ private:
     float largest_mm_ = 0.0F;
     UniformGrid grid_;
 };
+
+/// Warns about entries with a fixed position whose objects overlap each other or a wall deeply, naming both.
+void warn_of_overlaps(Scenario const& scenario, World const& world);
+
+/// Whether the formation `imported` places the objects of an entry.
+bool is_imported(Scenario const& scenario, ObjectConfig const& object);
+
+/// Warns once about imported objects that overlap others, and once about those that reach into a wall: physics will
+/// move them away from the places in the file. `poses` are those of each entry of the scenario; `world` has all of its
+/// objects.
+void warn_of_imported(Scenario const& scenario, World const& world, std::vector<std::vector<Placement>> const& poses);
 
 }  // namespace pogosim

@@ -7,7 +7,9 @@
 #include <variant>
 
 #include "base/log.hpp"
+#include "pogosim/version.h"
 #include "process/crash_handler.hpp"
+#include "sim/pictures.hpp"
 #include "sim/simulation.hpp"
 
 namespace pogosim {
@@ -192,6 +194,19 @@ void WindowDriver::show_if_wanted() {
     }
     moment->recorded = simulation_.inspector().rows().take();
     window_->exchange().publish(std::move(moment));
+}
+
+WindowSetup window_setup(Scenario const& scenario, World const& world, std::string const& program_name) {
+    WindowSetup setup;
+    std::string const name = program_name.empty() ? "" : program_name + " - ";
+    setup.title = fmt::format("{}Pogosim {}", name, POGOSIM_VERSION_STRING);
+    PictureFormat const format = picture_format(scenario, world);
+    setup.size = format.size;
+    setup.options = format.paint;
+    setup.duration_s = scenario.simulation_time_s;
+    setup.time_step_s = world.time_step_s;
+    setup.speed_up = scenario.view.gui_speed_up;
+    return setup;
 }
 
 }  // namespace pogosim

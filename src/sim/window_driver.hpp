@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "config/scenario.hpp"
 #include "process/crash_handler.hpp"
 #include "sim/pacer.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/window_module.hpp"
 #include "view/exchange.hpp"
+#include "view/messages.hpp"
+#include "world/world.hpp"
 
 namespace pogosim {
 
@@ -63,5 +66,8 @@ private:
     bool shows_end_ = false;
     std::optional<Restart> restart_;
 };
+
+/// Sets all but the scenery, the seed and the place, which the run knows.
+WindowSetup window_setup(Scenario const& scenario, World const& world, std::string const& program_name);
 
 }  // namespace pogosim

@@ -1,5 +1,5 @@
 // What is said of files that a run would write.
-#include "sim/output_files.hpp"
+#include "sim/files_of_run.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // When rows are recorded, and the times that they bear.
-#include "sim/row_times.hpp"
+#include "sim/due_times.hpp"
 
 #include <gtest/gtest.h>
 

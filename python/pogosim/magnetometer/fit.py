@@ -1,7 +1,7 @@
 """The curve of a magnetometer: harmonics of the angle of the field in the robot's frame, and the ellipse in them.
 
 The simulator fits the same curve to a table (`magnetometer: {source: csv}`, src/sim/magnetometer_fit.cpp), and looks
-for the same rows that are far from the curve of the others (src/sim/magnetometer_doubts.cpp).
+for the same rows that are far from the curve of the others (src/sim/magnetometer_fit.cpp).
 """
 
 from __future__ import annotations

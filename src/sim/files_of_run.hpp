@@ -1,6 +1,7 @@
-// What can be said of the files that a run will write, without touching them.
+// What can be said of the files that a run will read and write, without touching them.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "base/problems.hpp"
@@ -8,6 +9,14 @@
 #include "config/scenario.hpp"
 
 namespace pogosim {
+
+/// Throws ConfigError, naming both keys, if a file that the run would write is one that it reads or also writes under
+/// another key, by whatever name, symbolic or hard link; and if an input file does not exist. Call it before anything
+/// is opened for writing. `film`: of --video; empty for none.
+void check_used_files(Scenario const& scenario, std::string const& film);
+
+/// True if the run reads this existing file, or writes it; false for one that only becomes a frame.
+bool is_used_file(Scenario const& scenario, std::string const& film, std::filesystem::path const& path);
 
 /// Throws ConfigError if the ending of a table's name says no format.
 void check_table_format(Scenario const& scenario, Setting setting, std::string const& name);

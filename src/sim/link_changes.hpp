@@ -1,7 +1,8 @@
-// Which links a run has had, for the metadata of its data file.
+// How the links of a run change: which broke, for users, and all of them, for the metadata of its data file.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,22 @@ private:
     std::vector<double> made_s_;  // of the links after the initial ones
     std::vector<Cut> cut_;        // in the order of time
     std::vector<bool> is_cut_;    // what is in `cut_`, by link
+};
+
+// Tells users that links have broken.
+
+class BrokenLinks {
+public:
+    /// Before the step of the engine: what is cut now was cut by a program or a host.
+    void note(World const& world);
+
+    /// After it: what has been cut in it has broken. Logs the first link of each category that does.
+    void tell(World const& world);
+
+private:
+    std::uint32_t changes_ = 0;     // World::link_changes when links were last looked at
+    std::vector<bool> is_cut_;      // each link
+    std::vector<bool> has_broken_;  // each category
 };
 
 }  // namespace pogosim
