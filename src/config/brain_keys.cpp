@@ -1,4 +1,4 @@
-#include "config/brain_keys.hpp"
+#include "config/object_parts.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,9 +17,8 @@
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/find_file.hpp"
-#include "config/function_costs.hpp"
+#include "config/included_files.hpp"
 #include "config/shape_keys.hpp"
-#include "config/value_or_file.hpp"
 #include "world/mailbox.hpp"
 
 namespace pogosim {

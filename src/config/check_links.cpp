@@ -1,4 +1,4 @@
-#include "config/check_links.hpp"
+#include "config/check_scenario.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "config/check_options.hpp"
+#include "config/option_keys.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "base/nearest_name.hpp"
-#include "config/batch_names.hpp"
-#include "config/option_keys.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {

@@ -16,8 +16,7 @@
 
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
-#include "config/check_links.hpp"
-#include "config/old_names.hpp"
+#include "config/misplaced_keys.hpp"
 #include "config/source.hpp"
 #include "config/values.hpp"
 

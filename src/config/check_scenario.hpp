@@ -12,4 +12,7 @@ namespace pogosim {
 /// is no robot, or one does nothing. Objects are looked at only if all of them could be read (`objects_are_right`).
 void check_scenario(Scenario const& scenario, bool objects_are_right, Reading& reading);
 
+/// Throws KeyError if the objects of the scenario cannot be linked like that.
+void check_link(Scenario const& scenario, LinkConfig const& link);
+
 }  // namespace pogosim

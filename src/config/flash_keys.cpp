@@ -1,4 +1,4 @@
-#include "config/flash_keys.hpp"
+#include "config/scenario_keys.hpp"
 
 #include <array>
 #include <span>

@@ -1,4 +1,4 @@
-#include "config/function_costs.hpp"
+#include "config/object_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "config/value_or_file.hpp"
+#include "config/included_files.hpp"
 
 namespace pogosim {
 

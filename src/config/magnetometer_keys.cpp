@@ -1,4 +1,4 @@
-#include "config/magnetometer_keys.hpp"
+#include "config/scenario_keys.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

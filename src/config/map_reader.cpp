@@ -9,9 +9,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
-#include "config/old_names.hpp"
+#include "config/misplaced_keys.hpp"
 #include "config/option_keys.hpp"
-#include "config/other_level.hpp"
 
 namespace pogosim {
 

@@ -1,4 +1,4 @@
-#include "config/model_keys.hpp"
+#include "config/object_parts.hpp"
 
 #include <fmt/format.h>
 

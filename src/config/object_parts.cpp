@@ -7,12 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "config/brain_keys.hpp"
-#include "config/flash_keys.hpp"
-#include "config/function_costs.hpp"
 #include "config/lamp_keys.hpp"
-#include "config/model_keys.hpp"
-#include "config/reception_keys.hpp"
+#include "config/scenario_keys.hpp"
 #include "config/shape_keys.hpp"
 
 namespace pogosim {

@@ -1,11 +1,15 @@
-// The keys with which a configuration offers alternative values, for batches and optimisations. Python has the same
-// lists (pogosim/batch/option_words.py).
+// The keys with which a configuration offers alternative values, for batches and optimisations, and the search for
+// misspelt ones, which would silently leave out a part of a study. Python has the same lists
+// (pogosim/batch/option_words.py).
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "base/problems.hpp"
 #include "config/tree.hpp"
 
 namespace pogosim {
@@ -48,5 +52,18 @@ bool is_slip_of(std::string_view word, std::string_view key);
 
 /// The word of options that the key misspells; empty when it is one of them, or resembles none.
 std::string_view misspelt_option(std::string_view key);
+
+/// Top-level keys that identify the alternative of a batch: each `name` of `batch_hierarchical_options` anywhere in the
+/// tree, and the keys mentioned in `_batch_choice_names`, `result_new_columns` and `result_filename_format`.
+std::vector<std::string> batch_names(Node const& root);
+
+/// Adds a mistake, which names the nearest word, wherever
+/// - a map of options (with `default_option`, `batch_options`, ...), or one of its ranges and domains, has another key;
+/// - a key is one of these words misspelt, so that its map does not count as options. Names that users choose (of
+///   parameters, categories and alternatives) may resemble these words, unless the whole map looks like options.
+void check_options(Node const& root, Problems& problems);
+
+/// Throws ConfigError for the first key of a map of options at `path` that is none of its words.
+void refuse_other_keys(Node const& options, std::string const& path);
 
 }  // namespace pogosim

@@ -7,10 +7,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
-#include "config/dotted_path.hpp"
 #include "config/tree.hpp"
-#include "config/tree_limits.hpp"
-#include "config/yaml_text.hpp"
 
 namespace pogosim {
 

@@ -1,11 +1,10 @@
-#include "config/placement_keys.hpp"
+#include "config/object_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 
 #include "config/lamp_keys.hpp"
-#include "config/object_parts.hpp"
 #include "config/shape_keys.hpp"
 #include "geometry/outline_survey.hpp"
 

@@ -19,7 +19,6 @@
 #include "config/tree.hpp"
 #include "config/tree_builder.hpp"
 #include "config/values.hpp"
-#include "config/yaml_text.hpp"
 
 namespace pogosim {
 

@@ -1,4 +1,4 @@
-#include "config/reception_keys.hpp"
+#include "config/object_parts.hpp"
 
 #include <fmt/format.h>
 

@@ -4,16 +4,8 @@
 
 #include <utility>
 
-#include "config/brain_keys.hpp"
-#include "config/flash_keys.hpp"
-#include "config/function_costs.hpp"
-#include "config/link_keys.hpp"
-#include "config/magnetometer_keys.hpp"
-#include "config/model_keys.hpp"
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
-#include "config/placement_keys.hpp"
-#include "config/reception_keys.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/shape_keys.hpp"
 

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "base/log.hpp"
-#include "config/check_options.hpp"
 #include "config/option_keys.hpp"
 #include "config/tree.hpp"
 

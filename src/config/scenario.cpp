@@ -6,14 +6,11 @@
 #include <algorithm>
 
 #include "base/nearest_name.hpp"
-#include "config/batch_names.hpp"
-#include "config/check_options.hpp"
 #include "config/check_scenario.hpp"
-#include "config/link_keys.hpp"
+#include "config/included_files.hpp"
+#include "config/misplaced_keys.hpp"
 #include "config/object_types.hpp"
 #include "config/option_keys.hpp"
-#include "config/other_level.hpp"
-#include "config/robot_models.hpp"
 #include "config/scenario_keys.hpp"
 #include "config/source.hpp"
 

@@ -6,9 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "config/flash_keys.hpp"
-#include "config/link_keys.hpp"
-#include "config/magnetometer_keys.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
 

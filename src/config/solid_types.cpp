@@ -4,7 +4,6 @@
 
 #include "config/object_parts.hpp"
 #include "config/object_types.hpp"
-#include "config/placement_keys.hpp"
 
 namespace pogosim {
 

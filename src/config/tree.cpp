@@ -5,8 +5,6 @@
 #include <system_error>
 #include <utility>
 
-#include "config/dotted_path.hpp"
-
 namespace pogosim {
 
 namespace {

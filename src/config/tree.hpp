@@ -2,6 +2,8 @@
 // Nothing here depends on the YAML library.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,6 +54,10 @@ struct Node::Entry {
 Node read_yaml_file(std::string const& path,
                     std::string_view content = "expected a map of keys, in a configuration with at least 'objects'");
 
+/// The first document of `text`; a null node when there is none. `source` is the file name for messages. Errors as in
+/// read_yaml_file.
+Node parse_yaml(std::string const& text, std::string const& source);
+
 /// Applies one `--set a.b.c=value`: the value is YAML; maps on the way are made where they are missing, a number walks
 /// into a sequence, `\.` is a dot inside a key. Throws ConfigError when the text has no '=' or a path runs through a
 /// scalar.
@@ -67,5 +73,46 @@ std::string to_yaml(Node const& root);
 
 /// The node at a dotted path below `root` ("p.k", "list.0", `a\.b`; an exact dotted key wins), or nullptr.
 Node const* find_path(Node const& root, std::string_view dotted_path);
+
+// Dotted paths into a tree: "objects.robots.nb", "parameters.list.0", `a\.b` for a key that holds a dot.
+
+struct SplitPath {
+    std::string first;      // the first key, `\.` turned into a dot
+    std::string_view rest;  // behind the dot that follows it
+    bool last = true;       // no dot follows: `first` is the whole path
+};
+
+SplitPath split_path(std::string_view dotted_path);
+
+/// The entry of a map under `key`, or the item of a sequence at that index; nullptr when there is none.
+Node const* child_at(Node const& parent, std::string_view key);
+Node* child_at(Node& parent, std::string_view key);
+
+// How large a configuration may be. Aliases are copied, so that a few lines could ask for more than any memory.
+
+inline constexpr std::size_t kMaxDepth = 100;
+inline constexpr std::size_t kMaxNodes = 1'000'000;
+
+struct TreeSize {
+    std::size_t nodes = 0;
+    std::size_t depth = 0;  // 1: a node without children
+};
+
+inline TreeSize size_of(Node const& node) {
+    TreeSize size{1, 0};
+    auto const add = [&size](Node const& child) {
+        TreeSize const below = size_of(child);
+        size.nodes += below.nodes;
+        size.depth = std::max(size.depth, below.depth);
+    };
+    for (auto const& [key, value] : node.entries) {
+        add(value);
+    }
+    for (Node const& item : node.items) {
+        add(item);
+    }
+    size.depth += 1;
+    return size;
+}
 
 }  // namespace pogosim

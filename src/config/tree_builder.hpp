@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "config/tree.hpp"
-#include "config/tree_limits.hpp"
 
 namespace pogosim {
 

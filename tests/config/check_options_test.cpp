@@ -3,12 +3,11 @@
 
 #include <string>
 
-#include "config/check_options.hpp"
 #include "config/config_file.hpp"
 #include "config/option_keys.hpp"
 #include "config/reference.hpp"
+#include "config/tree.hpp"
 #include "config/user_parameters.hpp"
-#include "config/yaml_text.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;

@@ -1,5 +1,5 @@
 // The map `magnetometer`: every key, in its unit, and every kind of mistake.
-#include "config/magnetometer_keys.hpp"
+#include "config/scenario_keys.hpp"
 
 #include <gtest/gtest.h>
 

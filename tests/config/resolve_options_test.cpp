@@ -4,7 +4,6 @@
 
 #include "base/problems.hpp"
 #include "config/tree.hpp"
-#include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;

@@ -11,7 +11,7 @@
 
 #include "config/places.hpp"
 #include "config/source.hpp"
-#include "config/yaml_text.hpp"
+#include "config/tree.hpp"
 #include "config_file.hpp"
 #include "lamps/alternating_rays_lamp.hpp"
 #include "lamps/rotating_ray_lamp.hpp"

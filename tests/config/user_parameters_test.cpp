@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "config/tree.hpp"
-#include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "config/yaml_text.hpp"
+#include "config/tree.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;

@@ -8,7 +8,6 @@
 
 #include "base/random.hpp"
 #include "config/tree.hpp"
-#include "config/yaml_text.hpp"
 #include "config_file.hpp"
 
 using namespace pogosim;

@@ -1,9 +1,11 @@
-// Keys that stand in the wrong map of a configuration: those of objects at the top level, and the other way round.
+// Keys that are unknown where they stand: those of objects at the top level, and the other way round; and keys of
+// versions before 0.10, which the simulator no longer reads.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/tree.hpp"
 
@@ -17,5 +19,11 @@ std::string other_level(std::string_view path, std::string_view key, Node const&
 /// place only of a map such as `magnetometer` or `battery`; empty otherwise. At the top level and in a category, for
 /// keys that belong one level further in. `names`: those that the map at `path` may have.
 std::string inner_level(std::string_view path, std::string_view key, std::span<std::string const> names);
+
+/// "; it is now 'simulation_time'" for the path of an old key; empty for any other.
+std::string new_place(std::string_view path);
+
+/// The old keys at the top level.
+std::vector<std::string> old_keys(Node const& root);
 
 }  // namespace pogosim

@@ -1,8 +1,9 @@
-#include "config/other_level.hpp"
+#include "config/misplaced_keys.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <vector>
@@ -123,6 +124,44 @@ std::string other_level(std::string_view path, std::string_view key, Node const&
     return is_of_objects
                ? fmt::format("; it belongs in a category, as objects.{}.{}", shown(category_with(key, map)), shown(key))
                : "";
+}
+
+namespace {
+
+struct OldName {
+    std::string_view old_path;
+    std::string_view new_path;
+};
+
+constexpr std::array kOldNames{
+    OldName{"nBots", "objects.<category>.nb"},
+    OldName{"commRadius", "objects.<category>.communication_radius"},
+    OldName{"msgSuccessRate", "objects.<category>.msg_success_rate"},
+    OldName{"robot_radius", "objects.<category>.radius"},
+    OldName{"initial_robot_formation", "initial_formation"},
+    OldName{"initial_light_value", "objects.<light>.value"},
+    OldName{"showComms", "show_communication_channels"},
+    OldName{"simulationTime", "simulation_time"},
+    OldName{"timeStep", "time_step"},
+    OldName{"photo_start_at", "objects.<light>.photo_start_at"},
+    OldName{"photo_start_duration", "objects.<light>.photo_start_duration"},
+};
+
+}  // namespace
+
+std::string new_place(std::string_view path) {
+    auto const old = std::ranges::find(kOldNames, path, &OldName::old_path);
+    return old == kOldNames.end() ? "" : fmt::format("; it is now '{}'", old->new_path);
+}
+
+std::vector<std::string> old_keys(Node const& root) {
+    std::vector<std::string> found;
+    for (Node::Entry const& entry : root.entries) {
+        if (std::ranges::find(kOldNames, entry.key, &OldName::old_path) != kOldNames.end()) {
+            found.push_back(entry.key);
+        }
+    }
+    return found;
 }
 
 }  // namespace pogosim

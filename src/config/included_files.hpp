@@ -1,4 +1,5 @@
-// Values that a configuration may also keep in a file of their own: `script: [...]`, or `script: dance.yaml`.
+// Parts of a configuration that may stand in files of their own: values, as in `script: [...]` or `script: dance.yaml`,
+// and robot models.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string_view>
 
 #include "config/reading.hpp"
+#include "config/tree.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -30,5 +32,12 @@ std::filesystem::path path_of_yaml(Place const& place, std::filesystem::path con
 
 /// The value under a key, from the file that it names, which is noted in `reading`. Throws ConfigError.
 WrittenValue value_or_file(Place const& place, FileOfValue const& file, Reading& reading);
+
+// Files of `robot_model`: a map of keys that hold for a category where its entry does not have them.
+
+/// Puts the keys of its model into each entry of `objects` that names one, in place of `robot_model`; each key knows
+/// the file and line that it came from. The files are noted in `reading`. Mistakes are added to
+/// `reading.problems`, and their entry stays as it is.
+void include_robot_models(Node& root, Reading& reading);
 
 }  // namespace pogosim
