@@ -30,7 +30,6 @@
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
-#include "process/forked_child.hpp"
 #include "process/process.hpp"
 #include "process/program_image.hpp"
 #include "sim/check_run.hpp"

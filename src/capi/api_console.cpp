@@ -9,7 +9,7 @@
 
 #include "base/log.hpp"
 #include "process/crash_handler.hpp"
-#include "process/forked_child.hpp"
+#include "process/process.hpp"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/waiting.hpp"

@@ -11,7 +11,7 @@
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
-#include "process/forked_child.hpp"
+#include "process/process.hpp"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "pogosim/program.h"
-#include "process/forked_child.hpp"
+#include "process/process.hpp"
 #include "robot/context.hpp"
 #include "robot/function_times.hpp"
 #include "robot/require_robot.hpp"

@@ -1,4 +1,4 @@
-#include "process/blocked_watch.hpp"
+#include "process/crash_handler_state.hpp"
 
 #ifdef __linux__
 
@@ -22,10 +22,8 @@
 #include <vector>
 
 #include "base/background_thread.hpp"
-#include "process/crash_handler_state.hpp"
+#include "process/backtrace.hpp"
 #include "process/crash_message.hpp"
-#include "process/source_place.hpp"
-#include "process/stack_of_thread.hpp"
 
 namespace pogosim {
 

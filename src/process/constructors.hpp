@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +11,16 @@
 #include "pogosim/program.h"
 
 namespace pogosim {
+
+/// An executable or a shared object that is in memory.
+struct LoadedObject {
+    std::uintptr_t load_address = 0;  // of what its file says
+    std::vector<std::span<std::byte>> writable{};
+    std::span<void (*const)()> initializers{};  // called before main(), or when it was loaded
+};
+
+/// The object that contains a place in memory. Empty if that is not known, as on systems other than Linux.
+LoadedObject loaded_object_at(void const* place);
 
 /// What a program's variables were before its static objects were constructed, and what constructs them.
 struct Constructors {

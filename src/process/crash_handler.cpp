@@ -9,13 +9,11 @@
 
 #include "base/background_thread.hpp"
 #include "process/backtrace.hpp"
-#include "process/blocked_watch.hpp"
 #include "process/caught_signals.hpp"
 #include "process/crash_handler_state.hpp"
 #include "process/crash_message.hpp"
 #include "process/crash_name.hpp"
 #include "process/fibers.hpp"
-#include "process/forked_child.hpp"
 #include "process/other_threads.hpp"
 #include "process/process.hpp"
 

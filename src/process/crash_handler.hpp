@@ -22,8 +22,8 @@
 
 #include "base/floating_point.hpp"
 #include "base/memory.hpp"
-#include "process/guarded_memory.hpp"
 #include "process/other_threads.hpp"
+#include "process/program_memory.hpp"
 #include "process/running_code.hpp"
 
 namespace pogosim {

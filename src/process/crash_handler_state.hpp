@@ -105,7 +105,7 @@ struct CrashHandlerState {
     ThreadTimer processor_timer;
     ThreadTimer wall_timer;
 
-    // The watch over calls that block, see blocked_watch.hpp: of the thread that runs user code.
+    // The watch over calls that block, see watch_over_blocked(): of the thread that runs user code.
     pid_t thread_id = 0;
     void const* thread_of_code = nullptr;  // see RunningCode::of_this_thread()
     bool is_told_of_blocked = false;
@@ -177,5 +177,13 @@ void start_watch(CrashHandlerState& handler);
 void watch_rescue(CrashHandlerState& handler, double grace_s = 0.0);
 
 void stop_watch(CrashHandlerState& handler);
+
+// User code that blocks in wall-clock time, as in nanosleep(), read(), or for a lock: the whole run stands still, and
+// the watch over processor time does not see it. A thread of the simulator looks at the threads that run user code,
+// four times a second, without disturbing them: a signal would end some calls before their time.
+
+/// The calling thread runs user code for this handler from now on, until end_watch_over_blocked().
+void watch_over_blocked(CrashHandlerState& handler);
+void end_watch_over_blocked(CrashHandlerState& handler);
 
 }  // namespace pogosim

@@ -16,7 +16,7 @@
 
 #include "base/counted.hpp"
 #include "base/memory.hpp"
-#include "process/program_bytes.hpp"
+#include "process/program_memory.hpp"
 
 // A sanitizer needs to know which stack is in use. It may be in the user's program alone, so it is asked for here.
 extern "C" {

@@ -23,8 +23,8 @@
 #include "base/escaped.hpp"
 #include "base/floating_point.hpp"
 #include "pogosim/version.h"
+#include "process/constructors.hpp"
 #include "process/elf_file.hpp"
-#include "process/loaded_object.hpp"
 
 namespace pogosim {
 

@@ -1,4 +1,4 @@
-#include "process/source_place.hpp"
+#include "process/backtrace.hpp"
 
 #include <cxxabi.h>
 #include <fmt/format.h>
@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/escaped.hpp"
+#include "process/program_image.hpp"
 
 namespace pogosim {
 

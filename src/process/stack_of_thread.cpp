@@ -1,4 +1,4 @@
-#include "process/stack_of_thread.hpp"
+#include "process/backtrace.hpp"
 
 #ifdef POGOSIM_HAS_LIBDW
 
@@ -6,8 +6,6 @@
 #include <elfutils/libdwfl.h>
 #include <fcntl.h>
 #include <unistd.h>
-
-#include "process/backtrace.hpp"
 
 namespace pogosim {
 

@@ -13,8 +13,8 @@
 
 #include "brain/brain.hpp"
 #include "process/fibers.hpp"
-#include "process/guarded_memory.hpp"
 #include "process/program_image.hpp"
+#include "process/program_memory.hpp"
 #include "robot/context.hpp"
 #include "robot/function_times.hpp"
 #include "robot/robot_memory.hpp"

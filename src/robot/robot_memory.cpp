@@ -9,7 +9,7 @@
 
 #include "base/counted.hpp"
 #include "base/memory.hpp"
-#include "process/program_bytes.hpp"
+#include "process/program_memory.hpp"
 
 namespace pogosim {
 

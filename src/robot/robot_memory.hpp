@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "process/guarded_memory.hpp"
+#include "process/program_memory.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "process/source_place.hpp"
+#include "process/backtrace.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "process/program_bytes.hpp"
+#include "process/program_memory.hpp"
 #include "robot/controllers.hpp"
 #include "robot/shared_state.hpp"
 

@@ -18,7 +18,7 @@
 #include "device/motors.hpp"
 #include "device/sensing.hpp"
 #include "process/crash_handler.hpp"
-#include "process/forked_child.hpp"
+#include "process/process.hpp"
 #include "robot/controllers.hpp"
 
 namespace pogosim {

@@ -10,7 +10,6 @@
 #include "base/log.hpp"
 #include "device/clock.hpp"
 #include "process/backtrace.hpp"
-#include "process/source_place.hpp"
 #include "robot/controllers.hpp"
 
 namespace pogosim {

@@ -21,7 +21,7 @@
 #include "device/switched_off.hpp"
 #include "firmware/firmware_brain.hpp"
 #include "firmware/profile.hpp"
-#include "process/source_place.hpp"
+#include "process/backtrace.hpp"
 #include "robot/program_checks.hpp"
 #include "robot/running_robot.hpp"
 #include "sim/build_world.hpp"
