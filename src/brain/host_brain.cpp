@@ -11,10 +11,9 @@
 #include "brain/signed_power.hpp"
 #include "brain/ticks.hpp"
 #include "device/battery.hpp"
-#include "device/imu.hpp"
 #include "device/infrared.hpp"
 #include "device/leds.hpp"
-#include "device/photosensors.hpp"
+#include "device/sensors.hpp"
 
 namespace pogosim {
 

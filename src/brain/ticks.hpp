@@ -6,8 +6,8 @@
 
 #include "brain/brain.hpp"
 #include "device/clock.hpp"
+#include "device/infrared.hpp"
 #include "device/motors.hpp"
-#include "device/remote_control.hpp"
 #include "device/sensing.hpp"
 #include "device/set_up.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "base/log.hpp"
 #include "device/infrared.hpp"
-#include "device/remote_control.hpp"
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
 #include "robot/context.hpp"

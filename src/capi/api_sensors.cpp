@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "device/chips.hpp"
-#include "device/imu.hpp"
-#include "device/photosensors.hpp"
+#include "device/sensors.hpp"
 #include "robot/context.hpp"
 #include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"

@@ -3,22 +3,45 @@
 // Those that answer say whether a value can be used. `note(wrong, value)` is called for one that cannot be as it is.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "device/infrared.hpp"
 #include "device/motors.hpp"
-#include "device/slip.hpp"
 #include "interface/pogobase_inside.hpp"
 #include "world/mailbox.hpp"
 #include "world/robot_model.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
+
+/// All are literals.
+struct Slip {
+    std::string_view function;  // "pogobot_motor_set"; empty: a variable of the main loop
+    std::string_view argument;  // "value", or the variable
+    std::string_view expected;  // "0 to 1023 (motorFull)"
+    std::string_view outcome;   // "1023 is used"
+};
+
+/// The same without the function.
+struct WrongArgument {
+    std::string_view name;
+    std::string_view expected;
+    std::string_view outcome;
+};
+
+template <class Value>
+std::string slip_text(Slip const& slip, Value const& value) {
+    return fmt::format("{}{}{} is {}, expected {}; {}", slip.function,
+                       slip.function.empty() ? "" : "(): ", slip.argument, value, slip.expected, slip.outcome);
+}
 
 /// Values of the interface come first, then those that a robot's model lacks.
 template <class Note>

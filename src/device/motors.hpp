@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "device/velocity_command.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -19,6 +18,12 @@ void set_motor_direction(World& world, std::size_t device, int motor, std::uint8
 
 /// Bit m: the direction of motor m.
 std::uint32_t motor_directions(World const& world, std::size_t device);
+
+/// Sets the velocity command of this robot to what its motors ask for, noise included; called at each control tick.
+///
+/// With two wheels, and signed powers L and R (PWM, after the direction bits and the robot's bias), along the heading
+/// v = max_linear_speed (L + R) / (2 * 1023), clockwise on the screen omega = max_angular_speed (L - R) / 511.5.
+void command_velocity(World& world, std::uint32_t robot);
 
 /// At the end of each tick: a robot with motors that were ever set gets the velocity that they ask for, with
 /// fresh noise.

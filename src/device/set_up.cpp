@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "device/battery.hpp"
-#include "device/remote_control.hpp"
+#include "device/infrared.hpp"
 
 namespace pogosim {
 

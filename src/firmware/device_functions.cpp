@@ -12,11 +12,10 @@
 #include "device/arguments.hpp"
 #include "device/battery.hpp"
 #include "device/chips.hpp"
-#include "device/imu.hpp"
 #include "device/leds.hpp"
 #include "device/magnetometer.hpp"
 #include "device/motors.hpp"
-#include "device/photosensors.hpp"
+#include "device/sensors.hpp"
 #include "firmware/library.hpp"
 
 namespace pogosim {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "device/slip.hpp"
+#include "device/arguments.hpp"
 #include "firmware/firmware_program.hpp"
 #include "firmware/firmware_robot.hpp"
 #include "world/world.hpp"

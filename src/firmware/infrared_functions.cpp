@@ -1,5 +1,4 @@
 // The infrared port of a robot, for a firmware.
-#include "device/infrared.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,7 @@
 #include <string>
 
 #include "device/arguments.hpp"
-#include "device/remote_control.hpp"
+#include "device/infrared.hpp"
 #include "firmware/library.hpp"
 #include "interface/pogobase_inside.hpp"
 

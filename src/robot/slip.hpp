@@ -3,7 +3,6 @@
 #pragma once
 
 #include "device/arguments.hpp"
-#include "device/slip.hpp"
 #include "robot/context.hpp"
 
 namespace pogosim {

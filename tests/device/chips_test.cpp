@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "device/imu.hpp"
+#include "device/sensors.hpp"
 
 namespace pogosim {
 namespace {

@@ -1,5 +1,5 @@
 // Light sensors, without any program.
-#include "device/photosensors.hpp"
+#include "device/sensors.hpp"
 
 #include <gtest/gtest.h>
 

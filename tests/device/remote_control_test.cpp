@@ -1,5 +1,5 @@
 // Commands of the remote control, without any program.
-#include "device/remote_control.hpp"
+#include "device/infrared.hpp"
 
 #include <gtest/gtest.h>
 

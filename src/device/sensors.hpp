@@ -1,8 +1,10 @@
-// What the inertial measurement unit of a robot gives: plain functions of its motion.
+// What a program reads of the inertial measurement unit and the light sensors of its robot.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "base/random.hpp"
 #include "base/vec2.hpp"
@@ -25,5 +27,14 @@ ImuReading imu_reading(SensorSpec const& spec, Vec2 acceleration_m_s2, float tur
 
 /// What a robot reads, which has a body.
 ImuReading read_imu(World& world, std::uint32_t robot);
+
+/// Said once to a program that reads a photosensor where no light can be.
+inline constexpr std::string_view kNoLamps =
+    "there is no lamp in this world, so it is dark everywhere; add an object of type static_light or another lamp to "
+    "the configuration";
+
+/// Sensor counts at a photosensor (0 back, 1 front left, 2 front right) of a robot that has a body, with its bias, its
+/// noise, which is drawn here, and the bits of its converter.
+std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor);
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-#include "device/imu.hpp"
+#include "device/sensors.hpp"
 
 #include <algorithm>
 
@@ -56,6 +56,16 @@ ImuReading read_imu(World& world, std::uint32_t robot) {
     float const turning_rad_s = observed_motion(world, world.robots.body[robot]).angular_velocity_rad_s;
     return imu_reading(world.spec_of(robot).sensors, acceleration_m_s2(world, robot), turning_rad_s,
                        world.devices.imu_noise[robot]);
+}
+
+std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor) {
+    RobotSpec const& spec = world.spec_of(robot);
+    int level = light_at_sensor(world, robot, sensor) + world.devices.photosensor_bias[robot][sensor];
+    if (float const noise = spec.photosensor_noise_stddev; noise > 0.0F) {
+        level += static_cast<int>(noise * world.robots.stream[robot].normal());
+    }
+    level = converted_light(level, spec.sensors.photosensor_bits);
+    return static_cast<std::int16_t>(std::clamp<int>(level, INT16_MIN, INT16_MAX));
 }
 
 }  // namespace pogosim
