@@ -8,8 +8,7 @@
 #include <optional>
 
 #include "base/log.hpp"
-#include "brain/signed_power.hpp"
-#include "brain/ticks.hpp"
+#include "brain/driving.hpp"
 #include "device/battery.hpp"
 #include "device/infrared.hpp"
 #include "device/leds.hpp"

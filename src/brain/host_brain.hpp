@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "brain/brain.hpp"
-#include "brain/message_sender.hpp"
+#include "brain/driving.hpp"
 
 namespace pogosim {
 

@@ -4,9 +4,7 @@
 #include <cstring>
 #include <variant>
 
-#include "brain/message_sender.hpp"
-#include "brain/signed_power.hpp"
-#include "brain/ticks.hpp"
+#include "brain/driving.hpp"
 #include "device/infrared.hpp"
 #include "device/leds.hpp"
 

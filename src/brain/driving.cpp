@@ -1,4 +1,4 @@
-#include "brain/message_sender.hpp"
+#include "brain/driving.hpp"
 
 #include "device/infrared.hpp"
 #include "interface/pogobase_inside.hpp"
