@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/library.hpp"
+#include "firmware/firmware_call.hpp"
 
 namespace pogosim {
 

@@ -16,7 +16,7 @@
 #include "device/magnetometer.hpp"
 #include "device/motors.hpp"
 #include "device/sensors.hpp"
-#include "firmware/library.hpp"
+#include "firmware/firmware_call.hpp"
 
 namespace pogosim {
 

@@ -15,8 +15,8 @@
 #include "device/motors.hpp"
 #include "device/sensing.hpp"
 #include "device/set_up.hpp"
-#include "firmware/saved_robot.hpp"
-#include "firmware/stop_text.hpp"
+#include "firmware/firmware_call.hpp"
+#include "firmware/firmware_robot.hpp"
 
 namespace pogosim {
 

@@ -14,6 +14,7 @@
 #include "device/arguments.hpp"
 #include "firmware/firmware_program.hpp"
 #include "firmware/firmware_robot.hpp"
+#include "riscv/core.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -126,5 +127,25 @@ struct LibraryFunction {
 
 /// All of them, in an order that does not change while the process runs.
 std::span<LibraryFunction const> library_functions();
+
+/// "it jumped to 0x00000000, where there is no code: ...". For reasons that a program can be blamed for.
+std::string text_of(Stop const& stop, FirmwareRobot const& robot, Firmware const& firmware);
+
+std::string text_of(WrongAddress const& wrong);
+
+/// Whether a robot has called a function that the simulator has no code for, see emu/stubs.S.
+bool is_without_code(FirmwareRobot const& robot);
+
+// The parts of library_functions(), by what they act on.
+
+/// What functions do that only set up hardware: devices are ready at the start of a run.
+CallOutcome do_nothing(FirmwareCall& call);
+
+std::span<LibraryFunction const> clock_functions();
+std::span<LibraryFunction const> console_functions();
+std::span<LibraryFunction const> device_functions();
+std::span<LibraryFunction const> flash_functions();
+std::span<LibraryFunction const> helper_functions();
+std::span<LibraryFunction const> infrared_functions();
 
 }  // namespace pogosim

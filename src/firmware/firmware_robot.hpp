@@ -1,10 +1,13 @@
 // What a robot that runs firmware has of its own: processor, memory, and what its library keeps for it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/random.hpp"
 #include "device/random_seeds.hpp"
@@ -47,5 +50,11 @@ struct FirmwareRobot {
 
     explicit FirmwareRobot(std::shared_ptr<MemoryImage const> image) : memory(std::move(image)) {}
 };
+
+/// Appends the state of a robot as bytes: for hashes, and to go on from there.
+void save_robot(FirmwareRobot const& robot, std::vector<std::byte>& bytes);
+
+/// Takes the bytes of one robot from the front of `bytes`. `robot`: as it is at the start of a run.
+void restore_robot(FirmwareRobot& robot, std::span<std::byte const>& bytes);
 
 }  // namespace pogosim

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "device/arguments.hpp"
-#include "firmware/library.hpp"
+#include "firmware/firmware_call.hpp"
 
 namespace pogosim {
 

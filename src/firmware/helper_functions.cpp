@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/library.hpp"
+#include "firmware/firmware_call.hpp"
 #include "interface/pogobase_inside.hpp"
 
 namespace pogosim {

@@ -10,7 +10,7 @@
 
 #include "device/arguments.hpp"
 #include "device/infrared.hpp"
-#include "firmware/library.hpp"
+#include "firmware/firmware_call.hpp"
 #include "interface/pogobase_inside.hpp"
 
 namespace pogosim {

@@ -1,4 +1,4 @@
-#include "firmware/saved_robot.hpp"
+#include "firmware/firmware_robot.hpp"
 
 #include <cstdint>
 #include <cstring>
