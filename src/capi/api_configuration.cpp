@@ -8,8 +8,8 @@
 
 #include "process/crash_handler.hpp"
 #include "process/program_image.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
 
 using pogosim::BoundVariable;
 using pogosim::context;

@@ -10,8 +10,8 @@
 #include "base/log.hpp"
 #include "process/crash_handler.hpp"
 #include "process/process.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

@@ -12,9 +12,8 @@
 
 #include "base/error.hpp"
 #include "process/crash_handler.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 #include "world/column_types.hpp"
 
 using pogosim::CellValue;

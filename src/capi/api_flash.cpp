@@ -1,8 +1,7 @@
 // pogolib/flash.h
 #include "device/flash.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 
 using pogosim::context;
 using pogosim::NoteSlip;

@@ -12,8 +12,8 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "process/process.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
 
 using pogosim::context;
 using pogosim::require_robot;

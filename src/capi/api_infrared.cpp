@@ -11,12 +11,11 @@
 #include "device/infrared.hpp"
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
 #include "robot/controllers.hpp"
 #include "robot/function_times.hpp"
-#include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

@@ -1,8 +1,7 @@
 // pogolib/leds.h, and what colormaps.h does not check
 #include "device/leds.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

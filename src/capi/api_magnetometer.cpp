@@ -7,10 +7,9 @@
 
 #include "device/magnetometer.hpp"
 #include "process/crash_handler.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 extern "C" __attribute__((visibility("default"))) std::uint8_t magn_check();

@@ -5,9 +5,8 @@
 #include <span>
 
 #include "device/motors.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

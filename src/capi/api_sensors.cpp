@@ -4,10 +4,9 @@
 
 #include "device/chips.hpp"
 #include "device/sensors.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

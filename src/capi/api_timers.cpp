@@ -7,10 +7,9 @@
 
 #include "pogosim/program.h"
 #include "process/process.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/context.hpp"
 #include "robot/function_times.hpp"
-#include "robot/require_robot.hpp"
-#include "robot/slip.hpp"
 #include "robot/waiting.hpp"
 
 using pogosim::context;

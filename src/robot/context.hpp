@@ -34,6 +34,7 @@ struct BoundVariable {
 };
 
 class Controllers;
+class RunningCode;
 
 /// What user code can access besides its own robot.
 struct RunServices {
@@ -143,5 +144,9 @@ std::string current_place();
 
 /// "robot #3 of category 'robots', tick 17", or the callback when it is one of the whole run.
 std::string current_robot_name();
+
+/// Which robot's code runs, for messages of the crash handler and the watchdog: of all robots of this process, as the
+/// context of each thread has it.
+RunningCode const& code_of_robots();
 
 }  // namespace pogosim

@@ -24,8 +24,8 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "robot/assert_controllers.hpp"
+#include "robot/call_checks.hpp"
 #include "robot/program_checks.hpp"
-#include "robot/require_robot.hpp"
 #include "robot/robot_floating_point.hpp"
 #include "robot/shared_variables_check.hpp"
 

@@ -1,9 +1,8 @@
-#include "robot/running_robot.hpp"
+#include "robot/context.hpp"
 
 #include <algorithm>
 
 #include "process/backtrace.hpp"
-#include "robot/context.hpp"
 #include "robot/controllers.hpp"
 
 namespace pogosim {

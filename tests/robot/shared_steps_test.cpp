@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/worker_pool.hpp"
-#include "robot/running_robot.hpp"
+#include "robot/context.hpp"
 #include "sim/build_world.hpp"
 #include "support/scenes.hpp"
 #include "support/test_program.hpp"
