@@ -8,7 +8,7 @@
 
 #include "base/worker_pool.hpp"
 #include "comms/delivery_log.hpp"
-#include "comms/reception_table.hpp"
+#include "comms/reception.hpp"
 #include "comms/visibility.hpp"
 #include "world/world.hpp"
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "comms/reception_table.hpp"
-
 namespace pogosim {
 namespace {
 
