@@ -1,4 +1,4 @@
-#include "view/inspector_panel.hpp"
+#include "view/panels.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -7,8 +7,6 @@
 
 #include "render/text.hpp"
 #include "view/actions.hpp"
-#include "view/inspector_panel.hpp"
-#include "view/plot_panel.hpp"
 
 namespace pogosim {
 

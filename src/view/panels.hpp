@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "render/inspection.hpp"
 #include "view/column_history.hpp"
 #include "view/messages.hpp"
 #include "view/mouse_states.hpp"
@@ -90,5 +91,13 @@ private:
     bool inspector_is_open_ = true;
     bool plot_is_open_ = true;
 };
+
+// What fills panels that are open: inspector_panel.cpp, plot_panel.cpp.
+
+/// About the selected robot.
+void draw_inspector(Inspection const& robot);
+
+/// A data column over time: the selected robot, the mean of the swarm, and its 10th to 90th percentile.
+void draw_plot(PanelState& state);
 
 }  // namespace pogosim

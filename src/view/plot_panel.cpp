@@ -1,4 +1,4 @@
-#include "view/plot_panel.hpp"
+#include "view/panels.hpp"
 
 #include <fmt/format.h>
 

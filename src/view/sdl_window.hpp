@@ -3,6 +3,7 @@
 
 #include <SDL.h>
 
+#include <csetjmp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,5 +43,11 @@ private:
     bool full_screen_ = false;
     WindowState windowed_;  // its place before it was full screen
 };
+
+// Handles a display that is lost while a window is open. Xlib would end the program; the run must go on.
+
+/// From now on a lost connection to the X server jumps to `point`, in the thread that talks to the server. Nothing of
+/// SDL may be called afterwards. Call it before SDL connects to the server. Does nothing without X.
+void jump_when_display_is_lost(sigjmp_buf& point);
 
 }  // namespace pogosim

@@ -1,5 +1,4 @@
-#include "view/window.hpp"
-
+// The window: shows the latest moment of a run, and turns keys and the mouse into commands.
 #include <SDL.h>
 #include <fmt/format.h>
 
@@ -16,10 +15,8 @@
 #include "render/png_file.hpp"
 #include "view/actions.hpp"
 #include "view/column_history.hpp"
-#include "view/lost_display.hpp"
 #include "view/module.hpp"
 #include "view/panels.hpp"
-#include "view/pick.hpp"
 #include "view/pointer.hpp"
 #include "view/sdl_window.hpp"
 
@@ -564,8 +561,7 @@ private:
     Clock::time_point message_until_{};
 };
 
-}  // namespace
-
+/// Opens the window and runs it until it is closed, in the thread that calls it.
 void show_window(WindowSetup const& setup, Exchange& exchange) {
     static sigjmp_buf lost;
     static Window* window = nullptr;  // out of reach of the jump
@@ -595,6 +591,8 @@ void show_window(WindowSetup const& setup, Exchange& exchange) {
     delete window;
     exchange.report_end(end, problem);
 }
+
+}  // namespace
 
 }  // namespace pogosim
 

@@ -1,4 +1,4 @@
-#include "view/pick.hpp"
+#include "view/pointer.hpp"
 
 #include <limits>
 
