@@ -14,7 +14,7 @@
 #include "process/crash_handler.hpp"
 #include "robot/call_checks.hpp"
 #include "robot/context.hpp"
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 using pogosim::CellValue;
 using pogosim::ColumnType;

@@ -5,7 +5,7 @@
 #include "host/array_places.hpp"
 #include "host/hosted_run.hpp"
 #include "sim/saved_columns.hpp"
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 namespace pogosim {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/arena.hpp"
-#include "world/lamp_mark.hpp"
+#include "world/lamp_spec.hpp"
 #include "world/specs.hpp"
 #include "world/world.hpp"
 

@@ -8,7 +8,7 @@
 #include "geometry/arena.hpp"
 #include "geometry/shape.hpp"
 #include "render/trails.hpp"
-#include "world/lamp_mark.hpp"
+#include "world/lamp_spec.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

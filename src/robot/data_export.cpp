@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "base/error.hpp"
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 namespace pogosim {
 

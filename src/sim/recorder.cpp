@@ -16,7 +16,7 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "sim/files_of_run.hpp"
-#include "world/link_tension.hpp"
+#include "world/link_places.hpp"
 
 namespace pogosim {
 

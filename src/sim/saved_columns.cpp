@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "base/utf8.hpp"
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 namespace pogosim {
 

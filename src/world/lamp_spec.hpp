@@ -107,4 +107,14 @@ private:
     std::shared_ptr<Kind const> kind_;
 };
 
+/// A lamp with a place.
+struct LampMark {
+    Vec2 centre_mm;         // where it stands
+    Shape shape{};          // the area that it can light; global and arena: no outline
+    Vec2 shape_mm{};        // where the shape's centre is; alternating rays stand at its corners
+    bool has_beam = false;  // a lighthouse
+    float beam_rad = 0.0F;  // direction of its beam, if it is on
+    bool beam_is_on = false;
+};
+
 }  // namespace pogosim

@@ -1,5 +1,5 @@
 // The table of the types of users' columns.
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 #include <gtest/gtest.h>
 

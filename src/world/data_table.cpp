@@ -1,4 +1,4 @@
-#include "world/column_types.hpp"
+#include "world/data_table.hpp"
 
 #include <fmt/format.h>
 
