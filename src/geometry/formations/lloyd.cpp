@@ -7,16 +7,78 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
-#include "geometry/formations/power_diagram.hpp"
+#include "base/grid.hpp"
+#include "geometry/formations/disk_field.hpp"
 #include "geometry/formations/separation.hpp"
 #include "geometry/formations/task.hpp"
 
 namespace pogosim {
 
 namespace {
+
+// Power diagram of weighted sites: each point belongs to the site of least squared distance less weight. With equal
+// weights it is the Voronoi diagram. F. Aurenhammer, "Power diagrams: properties, algorithms and applications", SIAM J.
+// Comput. 16(1), 78-96, 1987.
+
+class PowerDiagram {
+public:
+    /// A site's weight is its radius squared, so that the border of two touching disks runs through their contact.
+    PowerDiagram(Box bounds_mm, std::span<float const> radii_mm);
+
+    void set_sites(std::span<Vec2 const> sites_mm);
+
+    /// The site whose cell the point, within the bounds, is in. The first of equals.
+    std::uint32_t cell_of(Vec2 point_mm) const;
+
+private:
+    struct Layer {
+        SizeClass sizes;
+        UniformGrid grid;  // of the members
+    };
+
+    Box bounds_mm_;
+    std::vector<Layer> layers_;
+    std::vector<float> weights_;
+};
+
+PowerDiagram::PowerDiagram(Box bounds_mm, std::span<float const> radii_mm) : bounds_mm_(bounds_mm) {
+    for (float const radius : radii_mm) {
+        weights_.push_back(radius * radius);
+    }
+    for (SizeClass& sizes : size_classes(radii_mm)) {
+        layers_.push_back({std::move(sizes), UniformGrid()});
+    }
+}
+
+void PowerDiagram::set_sites(std::span<Vec2 const> sites_mm) {
+    for (Layer& layer : layers_) {
+        std::vector<Vec2> members_mm;
+        for (std::uint32_t const site : layer.sizes.members) {
+            members_mm.push_back(sites_mm[site]);
+        }
+        layer.grid.build(members_mm, bounds_mm_, spacing_mm(bounds_mm_, members_mm.size()), /*periodic=*/false);
+    }
+}
+
+std::uint32_t PowerDiagram::cell_of(Vec2 point_mm) const {
+    std::pair<float, std::uint32_t> best{std::numeric_limits<float>::infinity(), 0};  // power, site
+    for (Layer const& layer : layers_) {
+        float const largest_weight = layer.sizes.largest * layer.sizes.largest;
+        layer.grid.search_outwards(
+            point_mm,
+            [&](std::uint32_t member, Vec2 place) {
+                std::uint32_t const site = layer.sizes.members[member];
+                best = std::min(best, {squared_length(place - point_mm) - weights_[site], site});
+            },
+            [&](float gap_mm) { return gap_mm * gap_mm - largest_weight > best.first; });
+    }
+    return best.second;
+}
 
 constexpr std::size_t kSamplesPerObject = 16;  // at least, so that many objects have cells too
 constexpr float kStill = 1.0e-3F;              // movement, relative to the arena's size, that counts as none
