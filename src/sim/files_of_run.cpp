@@ -18,7 +18,6 @@
 #include "record/data_file.hpp"
 #include "record/message_log.hpp"
 #include "render/film_file.hpp"
-#include "render/film_format.hpp"
 #include "render/frame_names.hpp"
 #include "sim/flash_state.hpp"
 #include "sim/pictures.hpp"

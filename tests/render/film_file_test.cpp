@@ -9,7 +9,6 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "render/film_format.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pogosim {
