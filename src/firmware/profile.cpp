@@ -14,7 +14,6 @@
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
-#include "base/json_text.hpp"
 
 namespace pogosim {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/json_text.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/rounded_time.hpp"
 #include "device/link_edit.hpp"

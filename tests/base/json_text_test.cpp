@@ -1,5 +1,5 @@
 // Text in JSON.
-#include "base/json_text.hpp"
+#include "base/escaped.hpp"
 
 #include <gtest/gtest.h>
 
