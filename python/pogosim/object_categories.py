@@ -86,7 +86,7 @@ def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[n
     """Return which of the entries of the configuration (`pogosim.scene.bodies_of`) the object of each row is of.
 
     Args:
-        rows: Of one run, with the column robot_category.
+        rows: Those of one run, with the column robot_category.
         configuration: That of the run.
 
     Returns:

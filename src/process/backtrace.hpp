@@ -8,7 +8,7 @@
 
 namespace pogosim {
 
-class ProgramImage;
+struct ProgramImage;
 
 /// The place in the code of a program that was executed last. Skips functions of libraries and of the simulator that it
 /// has called, and `callees` functions of its own. `program_base`: where the program is loaded. Null:
