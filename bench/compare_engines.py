@@ -31,8 +31,9 @@ RADIUS_MM = 26.5
 CONTACT_MM = 1.5  # robots with a smaller gap are in contact
 DURATION_S = 60.0
 START_S = 10.0  # not counted: robots leave their first places
-INTERVAL_S = 0.5
+INTERVAL_S = 0.4  # whole steps of 1, 5, 10 and 16 ms
 LAG_S = 10.0  # of displacements
+AREA_MM2 = 1e4  # of the arena, per robot
 COLUMNS = (
     "contacts per robot",
     "way in 10 s, mm",
@@ -40,6 +41,7 @@ COLUMNS = (
     "deepest overlap, mm",
     "processor s",
 )
+WALL_COLUMNS = ("robots at the wall, %", "deepest in the wall, mm")
 
 
 def positions_mm(engine: str, arena: str, seed: int, robots: int, time_step_s: float) -> npt.NDArray[np.float64]:
@@ -50,7 +52,7 @@ def positions_mm(engine: str, arena: str, seed: int, robots: int, time_step_s: f
         "physics_engine": engine,
         "objects.robots.nb": robots,
         "objects.robots.radius": RADIUS_MM,
-        "arena_surface": robots * 1e4,
+        "arena_surface": robots * AREA_MM2,
         "arena_file": str(ROOT / "arenas" / f"{arena}.csv"),
         "enable_data_logging": False,
     }
@@ -66,14 +68,41 @@ def figures(engine: str, arena: str, seed: int, robots: int, time_step_s: float)
     """The figures of one run, in the order of COLUMNS."""
     begin_s = time.process_time()
     places = positions_mm(engine, arena, seed, robots, time_step_s)
-    spent_s = time.process_time() - begin_s
+    return [*movement(places), time.process_time() - begin_s]
+
+
+def movement(places: npt.NDArray[np.float64]) -> list[float]:
+    """The figures of a run without its time. `places`: as positions_mm() returns them."""
+    robots = places.shape[1]
     first, second = np.triu_indices(robots, 1)
     gaps_mm = np.linalg.norm(places[:, first] - places[:, second], axis=-1) - 2 * RADIUS_MM
     lag = round(LAG_S / INTERVAL_S)
     ways_mm2 = ((places[lag:] - places[:-lag]) ** 2).sum(axis=-1)
     from_middle_mm = np.linalg.norm(places - places.mean(axis=(0, 1)), axis=-1)
     contacts = float((gaps_mm < CONTACT_MM).sum(axis=1).mean()) / robots
-    return [contacts, float(np.sqrt(ways_mm2.mean())), float(from_middle_mm.mean()), float(-gaps_mm.min()), spent_s]
+    return [contacts, float(np.sqrt(ways_mm2.mean())), float(from_middle_mm.mean()), float(-gaps_mm.min())]
+
+
+def wall_gaps_mm(places: npt.NDArray[np.float64], corners_mm: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Gaps between robots and the outer wall, a convex polygon of shape (n, 2): (times, robots)."""
+    edges = np.roll(corners_mm, -1, axis=0) - corners_mm
+    inward = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1)[:, None]
+    inward *= np.sign(((corners_mm.mean(axis=0) - corners_mm) * inward).sum(axis=1))[:, None]
+    gaps = np.full(places.shape[:2], np.inf)
+    for corner, normal in zip(corners_mm, inward, strict=True):
+        gaps = np.minimum(gaps, (places - corner) @ normal)
+    return gaps - RADIUS_MM
+
+
+def step_figures(engine: str, time_step_s: float, seed: int, robots: int) -> list[float]:
+    """The figures of one run in the disk: those of COLUMNS but the time, and those of WALL_COLUMNS."""
+    places = positions_mm(engine, "disk", seed, robots, time_step_s)
+    corners = np.loadtxt(ROOT / "arenas" / "disk.csv", delimiter=",")
+    x, y = corners.T
+    area = abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2.0
+    corners_mm = (corners - corners.min(axis=0)) * math.sqrt(robots * AREA_MM2 / area)
+    gaps_mm = wall_gaps_mm(places, corners_mm)
+    return [*movement(places), 100.0 * float((gaps_mm < CONTACT_MM).mean()), max(0.0, float(-gaps_mm.min()))]
 
 
 def with_spread(mean: float, spread: float) -> str:

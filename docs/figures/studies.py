@@ -20,7 +20,6 @@ sys.path += [str(ROOT / "examples" / "learning"), str(ROOT / "bench")]
 ENGINES = ("box2d", "disk")
 ROBOTS = 300  # of the comparison of engines
 SEEDS = 6
-TIMELESS = 4  # of its columns, the last one is a time
 
 
 @dataclass(frozen=True)
@@ -115,21 +114,6 @@ def learn(_folder: Path) -> dict[str, Picture | Quote]:
     }
 
 
-def engine_table(title: str, arenas: Sequence[str], seeds: int, time_step_s: float, columns: int) -> Quote:
-    """Compare how swarms move with both engines: means and standard deviations between seeds, in Markdown."""
-    import compare_engines
-
-    lines = [f"| arena | engine | {' | '.join(compare_engines.COLUMNS[:columns])} |", "|---" * (columns + 2) + "|"]
-    for arena in arenas:
-        for engine in ("box2d", "disk"):
-            runs = np.array(
-                [compare_engines.figures(engine, arena, seed, ROBOTS, time_step_s) for seed in range(1, seeds + 1)]
-            )
-            cells = map(compare_engines.with_spread, runs.mean(0)[:columns], runs.std(0)[:columns])
-            lines.append(f"| {arena}{title} | {engine} | {' | '.join(cells)} |")
-    return Quote(tuple(lines))
-
-
 def compared(first: str, columns: Sequence[str], rows: Mapping[tuple[str, str], Callable[[int], list[float]]]) -> Quote:
     """Compare runs: means and standard deviations between SEEDS seeds, in Markdown.
 
@@ -151,16 +135,28 @@ def compare_engines_a_little(_folder: Path) -> str:
     """Run few robots with both engines."""
     import compare_engines
 
-    engines = ("box2d", "disk")
-    rows = [compare_engines.figures(engine, "disk", 1, ROBOTS // 10, 0.01)[:TIMELESS] for engine in engines]
+    rows = [compare_engines.step_figures(engine, 0.01, 1, ROBOTS // 10) for engine in ENGINES]
     return fingerprint(pd.DataFrame(np.round(rows, 9)).rename(columns=str))
 
 
 def compare_both_engines(_folder: Path) -> dict[str, Picture | Quote]:
     """Compare the engines as the page says."""
+    import compare_engines
+
+    columns = compare_engines.COLUMNS[:-1]  # without the time
+    arenas = {
+        (arena, engine): partial(compare_engines.figures, engine, arena, robots=ROBOTS, time_step_s=0.01)
+        for arena in ("disk", "annulus", "H")
+        for engine in ENGINES
+    }
+    steps = {
+        (str(ms), engine): partial(compare_engines.step_figures, engine, ms / 1000, robots=ROBOTS)
+        for ms in (1, 5, 10, 16)
+        for engine in ENGINES
+    }
     return {
-        "physics.md: engines": engine_table("", ("disk", "annulus", "H"), 6, 0.01, TIMELESS),
-        "physics.md: small_steps": engine_table(", steps of 1 ms", ("disk",), 6, 0.001, TIMELESS - 1),
+        "physics.md: engines": compared("arena", columns, arenas),
+        "physics.md: steps": compared("step, ms", (*columns, *compare_engines.WALL_COLUMNS), steps),
     }
 
 

@@ -73,7 +73,7 @@ def quotes_on_pages() -> set[str]:
 def test_every_quote_of_a_page_is_made_by_a_program() -> None:
     made = {name for script in SCRIPTS.values() for name in script.NAMES if not name.endswith(".png")}
     made |= {study.quote for study in STUDIES.values()} | {times.quote for times in TIMES.values()}
-    made |= {"learning.md: caption", "physics.md: small_steps"}  # beside the numbers of their studies
+    made |= {"learning.md: caption", "physics.md: steps"}  # beside the numbers of their studies
     assert quotes_on_pages() == made
 
 
