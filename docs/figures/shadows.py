@@ -16,7 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from pictures import Picture, from_figure
 from pogosim import Simulation
-from pogosim.scene import entries, shape_of
+from pogosim.scene import entries
+from pogosim.shapes import shape_of
 
 NAMES = ("shadows.png",)
 SIDE_MM = 1000
