@@ -247,7 +247,7 @@ void read_body(MapReader& reader, ObjectConfig& object) {
     BodySpec& body = object.spec.body.emplace();
     reader.read(body_keys(), body);
     body.density = std::max(body.density, kLeastDensity);
-    // Robots that drive hardly do in reality, and a membrane that does is dark inside.
+    // Real robots hardly throw shadows, and a membrane that throws one is dark inside.
     bool const lets_light_pass =
         object.spec.robot && (object.spec.robot->model.has_motors() || object.spec.robot->model.sends_along_outline);
     body.blocks_light = !lets_light_pass;

@@ -26,9 +26,12 @@ std::string size_key(Shape const& shape, bool longer) {
             return "corners";
         case ShapeKind::compound:
             return "parts";
-        default:
-            return "radius";
+        case ShapeKind::disk:
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
     }
+    return "radius";
 }
 
 std::string size_key(ObjectSpec const& spec) {

@@ -1,7 +1,7 @@
 // Lamps at work. Each kind has a make_lamp(), which turns its parameters into something that writes light levels into
 // the map. It gets a map for its cells, whose levels do not matter; all maps to paint on have the same cells.
 //
-//     spots that stand still    summed once, and again when a photo start changes one of them
+//     spots that stand still    summed, and again when one of them or a shadow changes
 //     spots on an orbit         added to that sum
 //     rays                      overwrite the cells they light, the later lamp wins
 #pragma once

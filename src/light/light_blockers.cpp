@@ -164,13 +164,22 @@ private:
 /// The cells that are hidden from one point.
 class LightBlockers::Hidden {
 public:
-    Hidden(LightMap const& map, Vec2 source_mm, std::vector<std::uint8_t>& is_hidden,
-           std::vector<std::uint16_t>& crossings, std::vector<std::uint32_t>& cells)
-        : around_(map, source_mm),
-          margin_mm_(0.5F * length(map.cell_mm)),
-          is_hidden_(is_hidden),
-          crossings_(crossings),
-          cells_(cells) {}
+    /// Adds to `cells`.
+    Hidden(LightMap const& map, Vec2 source_mm, Space& space, std::vector<std::uint32_t>& cells)
+        : around_(map, source_mm), margin_mm_(0.5F * length(map.cell_mm)), space_(space), cells_(cells) {
+        space_.is_hidden.resize(map.level.size(), 0);
+        space_.crossings.resize(map.level.size(), 0);
+        for (std::uint32_t const cell : cells_) {
+            space_.is_hidden[cell] = 1;
+        }
+    }
+    Hidden(Hidden const&) = delete;
+    Hidden& operator=(Hidden const&) = delete;
+    ~Hidden() {
+        for (std::uint32_t const cell : cells_) {
+            space_.is_hidden[cell] = 0;
+        }
+    }
 
     void behind_edge(Vec2 a, Vec2 b) {
         around_.behind_edge(point(a), point(b), [&](std::uint32_t cell, Point) { add(cell); });
@@ -185,54 +194,47 @@ public:
     /// What is behind closed lines: where the line of sight crosses them at least twice, and `hides` agrees.
     template <class Hides>
     void behind_outlines(std::span<Polygon const> outlines, Hides const& hides) {
-        touched_.clear();
+        space_.touched.clear();
+        space_.once.clear();
         for (Polygon const& outline : outlines) {
             Vec2 from = outline.back();
             for (Vec2 const to : outline) {
                 around_.behind_edge(point(from), point(to), [&](std::uint32_t cell, Point centre) {
-                    if (++crossings_[cell] == 2) {
-                        touched_.push_back({cell, centre});
-                    } else if (crossings_[cell] == 1) {
-                        once_.push_back(cell);
+                    std::uint16_t& crossings = space_.crossings[cell];
+                    if (++crossings == 2) {
+                        space_.touched.push_back({cell, centre.x, centre.y});
+                    } else if (crossings == 1) {
+                        space_.once.push_back(cell);
                     }
                 });
                 from = to;
             }
         }
-        for (Touched const& at : touched_) {
-            if (hides(at.centre, crossings_[at.cell])) {
+        for (Touched const& at : space_.touched) {
+            if (hides(Point{at.x_mm, at.y_mm}, space_.crossings[at.cell])) {
                 add(at.cell);
             }
         }
-        for (std::uint32_t const cell : once_) {
-            crossings_[cell] = 0;
+        for (std::uint32_t const cell : space_.once) {
+            space_.crossings[cell] = 0;
         }
-        once_.clear();
     }
 
     /// Cells this near to a sensor may give it its light.
     float margin_mm() const { return margin_mm_; }
 
 private:
-    struct Touched {
-        std::uint32_t cell;
-        Point centre;
-    };
-
     void add(std::uint32_t cell) {
-        if (is_hidden_[cell] == 0) {
-            is_hidden_[cell] = 1;
+        if (space_.is_hidden[cell] == 0) {
+            space_.is_hidden[cell] = 1;
             cells_.push_back(cell);
         }
     }
 
     CellsAround around_;
     float margin_mm_;
-    std::vector<std::uint8_t>& is_hidden_;
-    std::vector<std::uint16_t>& crossings_;
+    Space& space_;
     std::vector<std::uint32_t>& cells_;
-    std::vector<Touched> touched_;     // cells with several crossings
-    std::vector<std::uint32_t> once_;  // cells with any
 };
 
 void LightBlockers::start(World const& world) {
@@ -272,7 +274,7 @@ std::size_t LightBlockers::end_of_body(std::size_t first) const {
 }
 
 /// Blockers from `first` on are all parts of a body.
-void LightBlockers::add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden) const {
+void LightBlockers::add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden) {
     Blocker const& blocker = blockers_[first];
     BlockerPose const& pose = poses_[first];
     bool const has_sensors = has_sensors_[blocker.body];
@@ -284,10 +286,13 @@ void LightBlockers::add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden
         hidden.behind_disk(offset_mm, pose.radius_mm, has_sensors);
         return;
     }
-    std::vector<Polygon> parts;
-    for (std::size_t i = first; i < end_of_body(first); ++i) {
-        Polygon& turned = parts.emplace_back();
-        for (Vec2 const corner : blockers_[i].corners) {
+    std::size_t const count = end_of_body(first) - first;
+    space_.parts.resize(std::max(space_.parts.size(), count));
+    std::span const parts = std::span(space_.parts).first(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Polygon& turned = parts[i];
+        turned.clear();
+        for (Vec2 const corner : blockers_[first + i].corners) {
             turned.push_back(offset_mm + rotate(corner, pose.axis));
         }
     }
@@ -305,23 +310,25 @@ void LightBlockers::add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden
     });
 }
 
-void LightBlockers::find_hidden(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells) {
-    LightMap const& map = world.light;
+void LightBlockers::find_hidden_by_walls(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells) {
     cells.clear();
-    is_hidden_.resize(map.level.size(), 0);
-    crossings_.resize(map.level.size(), 0);
-    Hidden hidden(map, source_mm, is_hidden_, crossings_, cells);
-    if (world.walls_block_light && !world.periodic) {
-        std::vector<Polygon> outlines;
-        for (Polygon const& polygon : world.arena.polygons) {
-            outlines.push_back(moved(polygon, -1.0F * source_mm, 0.0F));
-        }
-        // Two crossings hide a place in the arena. One in a wall is lit through the other wall that a lamp outside has.
-        hidden.behind_outlines(outlines, [&](Point centre, int crossings) {
-            Vec2 const at_mm = source_mm + Vec2{static_cast<float>(centre.x), static_cast<float>(centre.y)};
-            return crossings > 2 || world.arena.contains(at_mm);
-        });
+    if (!world.walls_block_light || world.periodic) {
+        return;
     }
+    std::vector<Polygon> outlines;
+    for (Polygon const& polygon : world.arena.polygons) {
+        outlines.push_back(moved(polygon, -1.0F * source_mm, 0.0F));
+    }
+    Hidden hidden(world.light, source_mm, space_, cells);
+    // Two crossings hide a place in the arena. One in a wall is lit through the other wall that a lamp outside has.
+    hidden.behind_outlines(outlines, [&](Point centre, int crossings) {
+        Vec2 const at_mm = source_mm + Vec2{static_cast<float>(centre.x), static_cast<float>(centre.y)};
+        return crossings > 2 || world.arena.contains(at_mm);
+    });
+}
+
+void LightBlockers::add_hidden_by_bodies(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells) {
+    Hidden hidden(world.light, source_mm, space_, cells);
     Vec2 const size = world.arena.bounds.size();
     int const images = world.periodic ? 1 : 0;
     for (std::size_t i = 0; i < blockers_.size(); i = end_of_body(i)) {
@@ -338,9 +345,6 @@ void LightBlockers::find_hidden(World const& world, Vec2 source_mm, std::vector<
                 }
             }
         }
-    }
-    for (std::uint32_t const cell : cells) {
-        is_hidden_[cell] = 0;
     }
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/polygon.hpp"
 #include "world/blocker.hpp"
 #include "world/world.hpp"
 
@@ -19,15 +20,18 @@ public:
     /// Takes the present poses of the bodies. Returns whether any that blocks light has moved since the last call.
     bool update(World const& world);
 
-    /// Replaces `cells` by those of world.light that are hidden from a lamp at `source_mm`, each once.
-    void find_hidden(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells);
+    /// Replaces `cells` by those of world.light that walls hide from a lamp at `source_mm`, each once.
+    void find_hidden_by_walls(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells);
+
+    /// Adds those that bodies hide from it and that are not among them.
+    void add_hidden_by_bodies(World const& world, Vec2 source_mm, std::vector<std::uint32_t>& cells);
 
 private:
     class Hidden;
 
     void start(World const& world);
     std::size_t end_of_body(std::size_t first) const;
-    void add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden) const;
+    void add_shadow(std::size_t first, Vec2 offset_mm, Hidden& hidden);
 
     bool has_started_ = false;
     std::size_t body_count_ = 0;  // of the world
@@ -35,9 +39,22 @@ private:
     std::vector<BlockerPose> poses_;  // of the blockers
     std::vector<bool> has_sensors_;   // of all bodies: their own shadow leaves these in the light
 
-    // Space for find_hidden(), 0 for each cell between two calls.
-    std::vector<std::uint8_t> is_hidden_;
-    std::vector<std::uint16_t> crossings_;
+    /// A cell whose line of sight crosses outlines several times, and its centre as seen from the lamp, mm.
+    struct Touched {
+        std::uint32_t cell;
+        double x_mm;
+        double y_mm;
+    };
+
+    /// Kept from call to call for its memory.
+    struct Space {
+        std::vector<std::uint8_t> is_hidden;   // of each cell; 0 between two calls
+        std::vector<std::uint16_t> crossings;  // the same
+        std::vector<Touched> touched;
+        std::vector<std::uint32_t> once;  // cells with any crossing
+        std::vector<Polygon> parts;       // of a body
+    };
+    Space space_;
 };
 
 }  // namespace pogosim

@@ -70,11 +70,16 @@ bool Lighting::take_over(Entry& entry, World const& world) {
 /// Returns whether other cells are hidden from the lamp than before.
 bool Lighting::cast_shadows(Entry& entry, World const& world, bool has_blocker_moved) {
     Vec2 const source_mm = entry.lamp->source_mm(entry.shown);
-    if (!has_blocker_moved && !is_first_update_ && source_mm == entry.hidden_from_mm) {
+    bool const has_moved = is_first_update_ || source_mm != entry.hidden_from_mm;
+    if (!has_blocker_moved && !has_moved) {
         return false;
     }
     entry.hidden_from_mm = source_mm;
-    blockers_.find_hidden(world, source_mm, newly_hidden_);
+    if (has_moved) {
+        blockers_.find_hidden_by_walls(world, source_mm, entry.hidden_by_walls);
+    }
+    newly_hidden_ = entry.hidden_by_walls;
+    blockers_.add_hidden_by_bodies(world, source_mm, newly_hidden_);
     std::swap(entry.hidden, newly_hidden_);
     return entry.hidden != newly_hidden_;
 }
@@ -95,6 +100,7 @@ void Lighting::update(World& world) {
     // What has changed?
     bool any_changed = is_first_update_;
     bool base_changed = is_first_update_;
+    bool has_plain_changed = is_first_update_;
     bool const has_blocker_moved = casts_shadows_ && blockers_.update(world);
     for (Entry& entry : lamps_) {
         bool const is_set = take_over(entry, world);
@@ -103,7 +109,9 @@ void Lighting::update(World& world) {
         entry.shown = state;
         if ((entry.spec.casts_shadows && cast_shadows(entry, world, has_blocker_moved)) || is_new) {
             any_changed = true;
-            base_changed = base_changed || entry.lamp->layer() == Layer::still;
+            bool const is_still = entry.lamp->layer() == Layer::still;
+            base_changed = base_changed || is_still;
+            has_plain_changed = has_plain_changed || (is_still && !entry.spec.casts_shadows);
         }
     }
     is_first_update_ = false;
@@ -114,7 +122,7 @@ void Lighting::update(World& world) {
     // Take the moving lamps off the map.
     LightMap& map = world.light;
     if (base_changed) {
-        sum_still_lamps(map);
+        sum_still_lamps(map, has_plain_changed);
     } else {
         for (std::uint32_t const cell : painted_) {
             map.level[cell] = base_[cell];
@@ -142,17 +150,33 @@ std::vector<LampMark> Lighting::marks() const {
     return marks;
 }
 
-void Lighting::sum_still_lamps(LightMap& map) {
-    std::ranges::fill(map.level, std::int16_t{0});
+void Lighting::paint_still_lamps(LightMap& map, bool with_shadows) {
     for (Entry const& entry : lamps_) {
-        if (entry.lamp->layer() == Layer::still && entry.setting.is_on) {
+        if (entry.lamp->layer() == Layer::still && entry.setting.is_on && entry.spec.casts_shadows == with_shadows) {
             paint(entry, map);
         }
     }
-    auto const purpose = [&] {
-        return fmt::format("the light of the lamps that stand still: {} of {} bytes", cells_text(map), kCellBytes);
+}
+
+/// Light adds up, so lamps without shadows can come first, and stay while shadows move.
+void Lighting::sum_still_lamps(LightMap& map, bool has_plain_changed) {
+    auto const keep = [&](std::vector<std::int16_t>& levels) {
+        auto const purpose = [&] {
+            return fmt::format("the light of the lamps that stand still: {} of {} bytes", cells_text(map), kCellBytes);
+        };
+        allocate_for(purpose, static_cast<double>(map.level.size() * kCellBytes), [&] { levels = map.level; });
     };
-    allocate_for(purpose, static_cast<double>(map.level.size() * kCellBytes), [&] { base_ = map.level; });
+    if (has_plain_changed) {
+        std::ranges::fill(map.level, std::int16_t{0});
+        paint_still_lamps(map, /*with_shadows=*/false);
+        if (casts_shadows_) {
+            keep(plain_);
+        }
+    } else {
+        map.level = plain_;
+    }
+    paint_still_lamps(map, /*with_shadows=*/true);
+    keep(base_);
 }
 
 }  // namespace pogosim

@@ -37,16 +37,19 @@ private:
         std::shared_ptr<Lamp const> lamp;
         LampState shown{};
         LampSetting setting{};
-        std::vector<std::uint32_t> hidden{};  // cells in shadow
+        std::vector<std::uint32_t> hidden{};           // cells in shadow
+        std::vector<std::uint32_t> hidden_by_walls{};  // the same of walls alone
         Vec2 hidden_from_mm{};
     };
 
     static bool take_over(Entry& entry, World const& world);
     bool cast_shadows(Entry& entry, World const& world, bool has_blocker_moved);
     void paint(Entry const& entry, LightMap& map);
-    void sum_still_lamps(LightMap& map);
+    void sum_still_lamps(LightMap& map, bool has_plain_changed);
+    void paint_still_lamps(LightMap& map, bool with_shadows);
 
     std::vector<Entry> lamps_;            // in the order in which they are put on the map
+    std::vector<std::int16_t> plain_;     // levels of those that stand still and cast no shadows, if others do
     std::vector<std::int16_t> base_;      // levels of the lamps that stand still alone
     std::vector<std::uint32_t> painted_;  // cells where the map may differ from that
     bool is_first_update_ = true;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/hull.hpp"
-#include "physics/wall_neighbour_list.hpp"
+#include "physics/wall_side.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "geometry/hull.hpp"
-#include "physics/wall_neighbour_list.hpp"
+#include "physics/wall_side.hpp"
 
 namespace pogosim {
 

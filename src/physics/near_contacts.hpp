@@ -154,7 +154,7 @@ private:
     std::vector<float> driven_impulse_;
     std::vector<HullImpulse> hull_impulse_;
     std::vector<SpringImpulse> spring_impulse_;
-    std::vector<TouchingParts> parts_with_fixed_;  // the same
+    std::vector<TouchingParts> parts_with_fixed_;  // scratch, while near_ is rebuilt
     std::vector<Pushing> pushing_;                 // scratch, while near_ is rebuilt
     std::vector<std::uint8_t> pushes_;             // of each body: it has a contact in pushing_
     std::uint32_t pair_count_ = 0;

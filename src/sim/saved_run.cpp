@@ -46,6 +46,7 @@ std::unique_ptr<SavedRun> Simulation::save() {
     auto saved = std::make_unique<SavedRun>(SavedRun{.world = world_,
                                                      .lighting = lighting_,
                                                      .physics = std::move(physics),
+                                                     .broken_links = broken_links_,
                                                      .brains = {},
                                                      .stop_requested = services_.stop_requested});
     for (auto const& brain : brains_) {
@@ -60,6 +61,7 @@ void Simulation::restore(SavedRun const& saved) {
     world_ = saved.world;
     lighting_ = saved.lighting;
     physics_ = saved.physics->copy();
+    broken_links_ = saved.broken_links;
     for (std::size_t i = 0; i < brains_.size(); ++i) {
         brains_[i]->restore(*saved.brains[i]);
     }

@@ -7,6 +7,7 @@
 #include "brain/brain.hpp"
 #include "light/lighting.hpp"
 #include "physics/physics_engine.hpp"
+#include "sim/link_changes.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -16,6 +17,7 @@ struct SavedRun {
     World world;
     Lighting lighting;
     std::unique_ptr<PhysicsEngine> physics;
+    BrokenLinks broken_links;
     std::vector<std::unique_ptr<SavedBrain>> brains;  // of Simulation::brains()
     bool stop_requested = false;                      // the program has asked for the end of the run
 };

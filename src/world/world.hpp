@@ -2,7 +2,7 @@
 // its own part:
 //
 //   sim       writes  step; before the first step, all that the configuration determines, time_step_s last
-//   light     writes  light.level: of all cells at first and whenever a static lamp goes on or off, otherwise of the
+//   light     writes  light.level: of all cells at first and when a still lamp or its shadow changes, otherwise of the
 //                     cells under moving lamps
 //   device    writes  devices, robots.led, robots.command, air; takes messages out of mailboxes; draws from
 //                     robots.stream; for what drives the robots

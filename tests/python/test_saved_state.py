@@ -486,3 +486,29 @@ def test_failed_run_stays_failed(tmp_path: Path) -> None:
             simulation.run()
         with pytest.raises(ConfigurationError, match="the run has failed: reset it"):
             simulation.restore(saved)
+
+
+def test_links_that_a_host_cuts_after_a_restore_have_not_broken(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whatever another branch has cut before."""
+    caplog.set_level("INFO", logger="pogosim")
+    poses = [[300, 300, 0], [400, 300, 0], [300, 600, 0], [400, 600, 0], [300, 800, 0], [400, 800, 0]]
+    settings = {"objects": {"robots": {"type": "pogobot", "brain": "host", "poses": poses}}}
+    with Simulation(None, write_scene(tmp_path, NO_FILES | settings), seed=1) as simulation:
+        simulation.link(0, 1, kind="rod")
+        simulation.link(2, 3, kind="rod")
+        simulation.link(4, 5, kind="rod", breaking_force=1e-3)
+        simulation.step(1)
+        saved = simulation.save()
+        simulation.cut(0)
+        simulation.step(1)
+        simulation.restore(saved)
+        simulation.cut(1)
+        simulation.brain("robots").motors[4, :2] = -1023
+        simulation.brain("robots").motors[5, :2] = 1023
+        simulation.step(30)
+        assert simulation.links["is_cut"].tolist() == [False, True, True]
+    broken = [record.getMessage() for record in caplog.records if "has broken" in record.getMessage()]
+    assert len(broken) == 1
+    assert "object 4 of 'robots' to object 5" in broken[0]
