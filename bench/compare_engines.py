@@ -36,7 +36,7 @@ LAG_S = 10.0  # of displacements
 AREA_MM2 = 1e4  # of the arena, per robot
 COLUMNS = (
     "contacts per robot",
-    "way in 10 s, mm",
+    "displacement in 10 s, mm",
     "distance from the middle, mm",
     "deepest overlap, mm",
     "processor s",

@@ -143,14 +143,12 @@ std::string problem_of(CLI::App const& app, CLI::ParseError const& error) {
     if (dynamic_cast<CLI::ArgumentMismatch const*>(&error) == nullptr) {
         return error.what();
     }
-    for (CLI::Option const* option : app.get_options()) {
-        bool const takes_one = option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
-        if (takes_one && option->count() > 1) {
-            return option->get_name() + " can be given only once";
-        }
-    }
     std::string const what = error.what();
-    return what.substr(0, what.find(':')) + " needs a value";
+    std::string const name = what.substr(0, what.find(':'));
+    bool const is_repeated = std::ranges::any_of(app.get_options(), [&](CLI::Option const* option) {
+        return option->get_name() == name && option->count() > 1;
+    });
+    return name + (is_repeated ? " can be given only once" : " needs a value");
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ std::span<Key<Entry> const> entry_keys() {
         K{"motors", Elsewhere{kMotors}, any(), "", "Powers from then on; above 0: forwards."},
         K{"led", Elsewhere{kLed}, any(), "", "Colour of an LED from then on."},
         K{"led_id", &Entry::led_id, between(0, static_cast<int>(kLedCount) - 1).whole(), "",
-          "Which LED; 0 is the head."},
+          "Which LED; 0 is the head."}
+            .only_if([](Entry const& entry) { return entry.led.has_value(); }),
         K{"message", &Entry::message, any(), "", "Text to send once, in all directions, up to 382 bytes."},
     };
     return keys;
@@ -93,11 +94,6 @@ void look_for_shares(Place const& motors) {
 
 Entry read_entry(MapReader& reader) {
     Entry entry;
-    reader.read(entry_keys(), entry);
-    if (Node const* const motors = reader.find("motors")) {
-        look_for_shares({*motors, reader.path_of("motors")});
-        std::ranges::copy(read_three(reader, "motors", between(-1023, 1023), kMotors), entry.motors.begin());
-    }
     if (reader.find("led") != nullptr) {
         auto const [red, green, blue] = read_three(reader, "led", between(0, 255), kLed);
         entry.led =
@@ -106,6 +102,11 @@ Entry read_entry(MapReader& reader) {
     if (reader.find("led_id") != nullptr && !entry.led) {
         reader.refuse("led_id",
                       "says which LED `led` colours, and there is no `led`; add one, such as led: [0, 255, 0]");
+    }
+    reader.read(entry_keys(), entry);
+    if (Node const* const motors = reader.find("motors")) {
+        look_for_shares({*motors, reader.path_of("motors")});
+        std::ranges::copy(read_three(reader, "motors", between(-1023, 1023), kMotors), entry.motors.begin());
     }
     if (entry.message.size() > kMostPayloadBytes) {
         fail_at({*reader.find("message"), reader.path_of("message")},

@@ -1,6 +1,7 @@
 #include "config/shape_keys.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,9 +12,11 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/log.hpp"
 #include "config/read_list.hpp"
 #include "geometry/hull.hpp"
 #include "geometry/outline_survey.hpp"
@@ -152,6 +155,41 @@ void require_list(MapReader const& reader, std::string_view key, std::string_vie
     }
 }
 
+/// The keys that say how large a shape is. Empty: it needs them, or has none.
+std::vector<std::string_view> own_size_keys(ShapeKind kind) {
+    switch (kind) {
+        case ShapeKind::disk:
+            return {"radius"};
+        case ShapeKind::rectangle:
+        case ShapeKind::capsule:
+            return {"body_width", "body_height"};
+        case ShapeKind::triangle:
+            return {"side_length"};
+        case ShapeKind::polygon:
+        case ShapeKind::compound:
+        case ShapeKind::global:
+        case ShapeKind::arena:
+            break;
+    }
+    return {};
+}
+
+/// Warns of a size that is that of another shape, where the shape's own is left to its default.
+void look_at_sizes(MapReader const& reader, Shape const& shape) {
+    constexpr std::array<std::string_view, 5> kSizes{"radius", "body_width", "body_height", "side_length", "corners"};
+    std::vector<std::string_view> const own = own_size_keys(shape.kind);
+    auto const is_given = [&](std::string_view key) { return reader.find(key) != nullptr; };
+    auto const other = std::ranges::find_if(kSizes, is_given);
+    if (own.empty() || other == kSizes.end() || std::ranges::any_of(own, is_given)) {
+        return;
+    }
+    float const size_mm = shape.kind == ShapeKind::disk       ? shape.radius_mm
+                          : shape.kind == ShapeKind::triangle ? shape.side_length_mm
+                                                              : shape.width_mm;
+    log().warn("{}: {}: is no size of this shape; {} {} missing, and {:g} mm is taken", reader.find(*other)->where(),
+               reader.path_of(*other), fmt::join(own, " and "), own.size() > 1 ? "are" : "is", size_mm);
+}
+
 /// To hundredths, for a message.
 float rounded_down(float length_mm) {
     return std::floor(100.0F * length_mm) / 100.0F;
@@ -162,6 +200,7 @@ void read_convex(MapReader& reader, std::span<K const> geometry_keys, Shape& sha
     reader.read(geometry_keys, shape);
     reader.read(size_keys(), shape);
     require_list(reader, "corners", kCorners);
+    look_at_sizes(reader, shape);
     if (shape.kind == ShapeKind::polygon) {
         Node const* const corners = reader.find("corners");
         if (corners == nullptr) {

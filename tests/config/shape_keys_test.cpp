@@ -62,6 +62,32 @@ TEST(ShapeKeys, CompoundHasItsPartsWhereTheyAreSaidToBe) {
     EXPECT_NEAR(box.max.y - box.min.y, 5.0F + 60.0F, 1e-2F);  // upright: from -5 to 60
 }
 
+TEST(ShapeKeys, SizeOfAnotherShapeIsAWarningWhereTheOwnIsMissing) {
+    auto const warnings_of = [](std::string const& keys) {
+        Warnings const warnings;
+        load(object(keys));
+        return warnings.text().substr(0, warnings.text().find("x.yaml:1:"));  // a world without robots
+    };
+    EXPECT_EQ(warnings_of("geometry: capsule, radius: 26.5"),
+              "x.yaml:2: objects.o.radius: is no size of this shape; body_width and body_height are missing, and 10 mm "
+              "is taken\n");
+    EXPECT_EQ(warnings_of("geometry: disk, body_width: 60"),
+              "x.yaml:2: objects.o.body_width: is no size of this shape; radius is missing, and 10 mm is taken\n");
+    EXPECT_NE(warnings_of("geometry: triangle, radius: 40").find("side_length is missing"), std::string::npos);
+    EXPECT_EQ(warnings_of("geometry: disk, radius: 20, body_width: 60"), "");  // as before the disk was a box
+    EXPECT_EQ(warnings_of("geometry: capsule"), "");
+}
+
+TEST(ShapeKeys, CoordinateNearZeroIsOrdinaryBesideLargeOnes) {
+    auto const warns = [](std::string const& corners) {
+        Warnings const warnings;
+        load(object("geometry: polygon, corners: " + corners));
+        return warnings.text().find("unusually small") != std::string::npos;
+    };
+    EXPECT_FALSE(warns("[[30, 0.5], [0, 30], [-30, -0.5], [0, -30]]"));
+    EXPECT_TRUE(warns("[[0.03, 0], [0, 0.03], [-0.03, 0], [0, -0.03]]"));
+}
+
 TEST(ShapeKeys, MistakesAreNamedWithTheirLine) {
     auto const error = [](std::string const& keys) { return load_error(object(keys)); };
     std::string const at = "x.yaml:2: objects.o";

@@ -355,3 +355,23 @@ def test_data_file_keeps_a_script_whole(program: Compile, tmp_path: Path) -> Non
     kept = yaml.safe_load(result.table().schema.metadata[b"resolved_configuration"])
     (entry,) = kept["objects"]["robots"]["brain"]["script"]
     assert (entry["motors"], entry["led"]) == ([1, 2, 3], [4, 5, 6])
+
+
+def test_data_file_repeats_a_script_without_colours(program: Compile, tmp_path: Path) -> None:
+    (tmp_path / "s.yaml").write_text("script: [{time_s: 1, motors: [1, 2, 3]}, {time_s: 2, led: [4, 5, 6]}]\n")
+    result = run(program("sample.c"), tmp_path, {**ALONE, "objects.robots.brain": {"script": "s.yaml"}})
+    again = (result.table().schema.metadata or {})[b"resolved_configuration"]
+    repeated = run(program("sample.c"), tmp_path, yaml.safe_load(again), ["--check-config"])
+    assert (repeated.code, repeated.errors) == (0, "")
+
+
+def test_assigned_powers_must_be_whole(tmp_path: Path) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        brain = sim.brain("robots")
+        brain.motors = np.full(brain.motors.shape, 512.0)
+        assert (brain.motors == 512).all()
+        with pytest.raises(
+            pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers, found 0\.8; scale and"
+        ):
+            brain.motors = np.full(brain.motors.shape, 0.8)
+        assert (brain.motors == 512).all()

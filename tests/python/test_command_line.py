@@ -42,6 +42,7 @@ def assert_wrong_usage(result: Run, what: str) -> None:
         (["-c", "scene.yaml", "-c", "scene.yaml"], "--config can be given only once"),
         (["-c", "scene.yaml", "-s", "1", "-s", "2"], "--seed can be given only once"),
         (["-c", "scene.yaml", "--set"], "--set needs a value"),
+        (["-c", "scene.yaml", "--set", "seed=1", "--set", "threads=1", "--hash"], "--hash needs a value"),
         (["-x"], "unknown argument '-x'"),
         (["-c", "scene.yaml", "-x"], "unknown argument '-x'"),
         (["-c", "scene.yaml", "--sead", "3"], "unknown argument '--sead'; did you mean '--seed'?"),

@@ -45,11 +45,11 @@ def called(folder: Path, packages: Path, *command: str, module: str = "pogosim")
 def test_command_of_a_package_is_listed_and_runs(packages: Path, tmp_path: Path) -> None:
     listed = called(tmp_path, packages, "--help")
     assert (listed.code, listed.errors) == (0, "")
-    assert re.search(r"^  count +say how many robots are in a data file$", listed.output, re.MULTILINE)
+    assert re.search(r"^  count +say how many objects are in a data file$", listed.output, re.MULTILINE)
     result = run(example("helloworld"), tmp_path, {"simulation_time": 1.0})
     assert result.code == 0
     counted = called(tmp_path, packages, "count", "data.feather")
-    assert (counted.code, counted.output, counted.errors) == (0, "3 robots\n", "")
+    assert (counted.code, counted.output, counted.errors) == (0, "3 objects\n", "")
     assert "did you mean 'count'?" in called(tmp_path, packages, "cout").errors
 
 

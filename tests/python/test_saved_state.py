@@ -494,8 +494,9 @@ def test_links_that_a_host_cuts_after_a_restore_have_not_broken(
     """Whatever another branch has cut before."""
     caplog.set_level("INFO", logger="pogosim")
     poses = [[300, 300, 0], [400, 300, 0], [300, 600, 0], [400, 600, 0], [300, 800, 0], [400, 800, 0]]
-    settings = {"objects": {"robots": {"type": "pogobot", "brain": "host", "poses": poses}}}
-    with Simulation(None, write_scene(tmp_path, NO_FILES | settings), seed=1) as simulation:
+    robots = {"type": "pogobot", "brain": "host", "poses": poses}
+    settings: dict[str, Any] = {**NO_FILES, "objects": {"robots": robots}}
+    with Simulation(None, write_scene(tmp_path, settings), seed=1) as simulation:
         simulation.link(0, 1, kind="rod")
         simulation.link(2, 3, kind="rod")
         simulation.link(4, 5, kind="rod", breaking_force=1e-3)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import pogosim
+from pogosim.arguments import shown
 from pogosim.command.parser import complain, warn
 from pogosim.errors import ToolError
 from pogosim.extensions import ExtensionError, Own, Table, raised, takes
@@ -174,7 +175,9 @@ def call_other(point: EntryPoint, arguments: Sequence[str], prog: str) -> int:
     """Run a subcommand of another package. What it raises is told in one line; returns the exit code."""
     command = COMMANDS.loaded(point)
     try:
-        code: int | None = command(arguments, prog)
+        code = command(arguments, prog)
+        if not isinstance(code, int | None):
+            raise TypeError(f"returned {shown(code)}, expected a number or nothing")
         return code or 0
     except BrokenPipeError:
         raise

@@ -9,11 +9,26 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.simulation.arrays import RunState, writable
-from pogosim.simulation.errors import given
+from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.library import check, library
 
 RECEIVED = np.dtype([(name, "<i4") for name in ("robot", "sender", "face", "length", "offset")])
 MOST_BYTES = 382
+
+
+def whole(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Return values that an array of whole numbers can take without losing fractions.
+
+    Raises:
+        ConfigurationError: Some are no whole numbers.
+    """
+    found = np.asarray(values)
+    if found.dtype.kind == "f" and not (is_whole := found == np.rint(found)).all():
+        raise ConfigurationError(
+            f"brain.{name} takes whole numbers, found {found[~is_whole].flat[0]:g}; scale and round it, such as "
+            "np.rint(1023 * policy) for powers"
+        )
+    return found
 
 
 class Brain:
@@ -65,7 +80,7 @@ class Brain:
 
     @motors.setter
     def motors(self, values: npt.ArrayLike) -> None:
-        self.motors[...] = values
+        self.motors[...] = whole("motors", values)
 
     @property
     def leds(self) -> npt.NDArray[np.uint8]:
@@ -74,7 +89,7 @@ class Brain:
 
     @leds.setter
     def leds(self, values: npt.ArrayLike) -> None:
-        self.leds[...] = values
+        self.leds[...] = whole("leds", values)
 
     @property
     def send_bytes(self) -> npt.NDArray[np.uint8]:

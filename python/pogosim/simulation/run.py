@@ -91,7 +91,8 @@ class Parameters(MutableMapping[str, Any]):
         known = self._simulation._parameter_values
         if not isinstance(name, str) or name not in known:
             raise KeyError(
-                f"no value was given for the parameter {shown(name)}; there are {', '.join(known) or 'none'}"
+                f"the parameter {shown(name)} was not set here; those that were: {', '.join(known) or 'none'}. "
+                "What the configuration file says is not among them"
             )
         return known[name]
 
