@@ -6,6 +6,7 @@ import contextlib
 import glob
 import os
 import stat
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Union
@@ -144,17 +145,31 @@ def partial_output(path: Path) -> Iterator[Path]:
         partial.unlink(missing_ok=True)
 
 
-def lock(file: IO[bytes] | IO[str]) -> bool:
-    """Lock an open file until it is closed; returns False if somewhere else it is. Where there are no locks, True."""
-    try:
-        import fcntl
+def lock(file: IO[bytes] | IO[str], patience_s: float = 0.0) -> bool:
+    """Lock an open file until it is closed. Where there are no locks, True.
 
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except (ImportError, OSError):
-        pass  # no locks on this system, or file system
-    return True
+    Args:
+        file: To be locked.
+        patience_s: How long to try, s. A process that was killed may leave one that it was just starting, which has
+            the lock for a moment more.
+
+    Returns:
+        Whether it is locked now; False if somewhere else it is.
+    """
+    end_s = time.monotonic() + patience_s
+    while True:
+        try:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() >= end_s:
+                return False
+            time.sleep(0.05)
+            continue
+        except (ImportError, OSError):
+            pass  # no locks on this system, or file system
+        return True
 
 
 def check_readable(names: Iterable[str]) -> None:

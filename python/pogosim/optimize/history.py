@@ -22,6 +22,7 @@ from pogosim.outputs import lock
 
 JOURNAL = "search.jsonl"
 VERSION = 1
+PATIENCE_S = 3.0  # with the lock of a search
 END = "end"  # key of the last line of a search that is finished
 DIGEST = " digest"  # behind the names of what is compared by its digest
 CHANGEABLE = ("max_evals", "final_runs")  # a search may be continued for longer, or for less long
@@ -111,7 +112,7 @@ class Journal:
         self.replaces = False
         self.end: int | None = 0  # of the lines to keep, in bytes; None: only they are there
         try:
-            if not lock(self.file):
+            if not lock(self.file, PATIENCE_S):
                 raise OptimizeError(
                     f"another search is writing to {path.parent}; wait for it, or choose another folder with -o"
                 )
