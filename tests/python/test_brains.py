@@ -6,6 +6,7 @@ import gc
 import logging
 import math
 import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -370,8 +371,12 @@ def test_assigned_powers_must_be_whole(tmp_path: Path) -> None:
         brain = sim.brain("robots")
         brain.motors = np.full(brain.motors.shape, 512.0)
         assert (brain.motors == 512).all()
-        with pytest.raises(
-            pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers, found 0\.8; scale and"
-        ):
-            brain.motors = np.full(brain.motors.shape, 0.8)
+        for wrong in (0.8, math.nan, math.inf, 1e10, 2**40, "12", [0.5, 0, 0], Fraction(1, 2), 1 + 1j):
+            with pytest.raises(pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers from -1023"):
+                brain.motors = wrong
         assert (brain.motors == 512).all()
+        brain.leds = [255, 0.0, 7]
+        for bad in (300, -1, [300, 0, 0], 0.5, math.inf, np.full(brain.leds.shape, 256)):
+            with pytest.raises(pogosim.ConfigurationError, match=r"brain\.leds takes whole numbers from 0 to 255"):
+                brain.leds = bad
+        assert (brain.leds == [255, 0, 7]).all()

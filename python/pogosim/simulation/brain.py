@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import shown
 from pogosim.simulation.arrays import RunState, writable
 from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.library import check, library
@@ -16,17 +17,30 @@ RECEIVED = np.dtype([(name, "<i4") for name in ("robot", "sender", "face", "leng
 MOST_BYTES = 382
 
 
-def whole(name: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return values that an array of whole numbers can take without losing fractions.
+def whole(name: str, values: npt.ArrayLike, limits: tuple[int, int], meaning: str) -> npt.NDArray[Any]:
+    """Return values that an array of whole numbers can take as they are.
+
+    Args:
+        name: That of the array.
+        values: To be assigned.
+        limits: The least and the greatest number that the array can hold.
+        meaning: Those that make sense, as words.
 
     Raises:
-        ConfigurationError: Some are no whole numbers.
+        ConfigurationError: Some are no whole numbers, or beyond the limits.
     """
     found = np.asarray(values)
-    if found.dtype.kind == "f" and not (is_whole := found == np.rint(found)).all():
+    is_fine = np.zeros(found.shape, dtype=bool)
+    if found.dtype.kind in "iub":
+        is_fine = np.asarray((found >= limits[0]) & (found <= limits[1]))
+    elif found.dtype.kind == "f":
+        is_fine = np.asarray((found == np.rint(found)) & (found >= limits[0]) & (found <= limits[1]))
+    if not is_fine.all():
+        wrong = found[~is_fine].flat[0]
+        text = f"{wrong:g}" if found.dtype.kind in "iubf" else shown(wrong)
         raise ConfigurationError(
-            f"brain.{name} takes whole numbers, found {found[~is_whole].flat[0]:g}; scale and round it, such as "
-            "np.rint(1023 * policy) for powers"
+            f"brain.{name} takes whole numbers {meaning}, found {text}; scale and round what is from 0 to 1, such as "
+            f"np.rint({meaning.rpartition(' ')[2]} * values)"
         )
     return found
 
@@ -80,7 +94,7 @@ class Brain:
 
     @motors.setter
     def motors(self, values: npt.ArrayLike) -> None:
-        self.motors[...] = whole("motors", values)
+        self.motors[...] = whole("motors", values, (-(2**31), 2**31 - 1), "from -1023 to 1023")
 
     @property
     def leds(self) -> npt.NDArray[np.uint8]:
@@ -89,7 +103,7 @@ class Brain:
 
     @leds.setter
     def leds(self, values: npt.ArrayLike) -> None:
-        self.leds[...] = whole("leds", values)
+        self.leds[...] = whole("leds", values, (0, 255), "from 0 to 255")
 
     @property
     def send_bytes(self) -> npt.NDArray[np.uint8]:
