@@ -34,7 +34,8 @@ constexpr std::string_view kParts =
     "x: 30}]";
 constexpr std::size_t kMostParts = 16;
 constexpr float kShortestSideMm = 1e-3F;
-constexpr float kTouchingMm = 0.1F;  // parts of a compound hold together up to this gap
+constexpr float kLargestInMetres = 10.0F;  // corners as far out as this are not in metres; small ones are just near 0
+constexpr float kTouchingMm = 0.1F;        // parts of a compound hold together up to this gap
 
 /// What has one outline.
 NamedKinds const kConvex{{"disk", ShapeKind::disk},
@@ -112,13 +113,17 @@ Polygon read_corners(Place const& place) {
         fail_expected(place, kCorners);
     }
     Polygon corners;
-    UnitSlips slips;
+    float largest_mm = 0.0F;
     for (Node const& item : items) {
         Place const corner{item, fmt::format("{}.{}", place.path, corners.size())};
         read_value(corner, {kCoordinate, "mm"}, corners.emplace_back());
-        slips.look_at(corner, {kCoordinate, "mm"});
+        largest_mm = std::max({largest_mm, std::abs(corners.back().x), std::abs(corners.back().y)});
     }
-    slips.warn();
+    if (largest_mm < kLargestInMetres) {
+        UnitSlips slips;
+        slips.look_at(place, {kCoordinate, "mm"});
+        slips.warn();
+    }
     for (std::size_t i = 0; i < corners.size(); ++i) {
         if (length(corners[(i + 1) % corners.size()] - corners[i]) < kShortestSideMm) {
             fail_at(place, fmt::format("corners {} and {} are the same", i, (i + 1) % corners.size()));
@@ -179,15 +184,19 @@ void look_at_sizes(MapReader const& reader, Shape const& shape) {
     constexpr std::array<std::string_view, 5> kSizes{"radius", "body_width", "body_height", "side_length", "corners"};
     std::vector<std::string_view> const own = own_size_keys(shape.kind);
     auto const is_given = [&](std::string_view key) { return reader.find(key) != nullptr; };
-    auto const other = std::ranges::find_if(kSizes, is_given);
-    if (own.empty() || other == kSizes.end() || std::ranges::any_of(own, is_given)) {
+    auto const other = std::ranges::find_if(
+        kSizes, [&](std::string_view key) { return is_given(key) && std::ranges::find(own, key) == own.end(); });
+    std::vector<std::string_view> missing;
+    std::ranges::remove_copy_if(own, std::back_inserter(missing), is_given);
+    if (missing.empty() || other == kSizes.end()) {
         return;
     }
     float const size_mm = shape.kind == ShapeKind::disk       ? shape.radius_mm
                           : shape.kind == ShapeKind::triangle ? shape.side_length_mm
-                                                              : shape.width_mm;
+                          : missing.front() == own.front()    ? shape.width_mm
+                                                              : shape.height_mm;
     log().warn("{}: {}: is no size of this shape; {} {} missing, and {:g} mm is taken", reader.find(*other)->where(),
-               reader.path_of(*other), fmt::join(own, " and "), own.size() > 1 ? "are" : "is", size_mm);
+               reader.path_of(*other), fmt::join(missing, " and "), missing.size() > 1 ? "are" : "is", size_mm);
 }
 
 /// To hundredths, for a message.

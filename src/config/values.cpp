@@ -346,17 +346,11 @@ void read_value(Place const& place, Limits const& limits, std::vector<std::strin
     }
 }
 
-// Where a coordinate of a list is larger, the list is not in metres, and its small ones are just near 0.
-constexpr double kMostMetres = 10.0;
-
 void UnitSlips::look_at(Place const& place, Limits const& limits) {
     for (std::size_t i = 0; i < place.node.items.size(); ++i) {
         look_at({place.node.items[i], fmt::format("{}.{}", place.path, i)}, limits);
     }
     std::optional<double> const number = number_of(place.node);
-    if (number && limits.unit == "mm") {
-        largest_mm_ = std::max(largest_mm_, std::abs(*number));
-    }
     if (!number || !(limits.range.is_unusually_small(*number) || limits.range.is_unusually_large(*number))) {
         return;
     }
@@ -372,8 +366,7 @@ void UnitSlips::look_at(Place const& place, Limits const& limits) {
 void UnitSlips::warn() const {
     for (Slip const& slip : slips_) {
         auto const similar = std::ranges::find(kSimilarUnits, slip.unit, &SimilarUnit::expected);
-        bool const is_ordinary = slip.unit == "mm" && std::abs(slip.number) < kMostMetres && largest_mm_ >= kMostMetres;
-        if (similar == kSimilarUnits.end() || is_ordinary) {
+        if (similar == kSimilarUnits.end()) {
             continue;
         }
         std::string const others = slip.count == 1 ? ""

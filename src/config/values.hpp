@@ -93,7 +93,6 @@ private:
         std::size_t count = 1;
     };
     std::vector<Slip> slips_;
-    double largest_mm_ = 0.0;  // of all lengths, without their signs
 };
 
 /// Throws ConfigError for a number, or one of a list, that is not whole.

@@ -35,7 +35,14 @@ std::int64_t capacity_of(std::uint8_t* block) {
     return std::int64_t{1} << head_of(block).exponent;
 }
 
+// No machine has more for one table; sanitizers end a program that asks for more.
+constexpr std::size_t kMostExponent = 39;
+
+/// Null: there is not enough memory.
 std::uint8_t* new_block(std::size_t exponent) {
+    if (exponent > kMostExponent) {
+        return nullptr;
+    }
     auto const head_bytes = static_cast<std::size_t>(kUsualAlignment);
     void* const memory = std::aligned_alloc(head_bytes, head_bytes + (std::size_t{1} << exponent));
     return memory != nullptr

@@ -73,6 +73,8 @@ TEST(ShapeKeys, SizeOfAnotherShapeIsAWarningWhereTheOwnIsMissing) {
               "is taken\n");
     EXPECT_EQ(warnings_of("geometry: disk, body_width: 60"),
               "x.yaml:2: objects.o.body_width: is no size of this shape; radius is missing, and 10 mm is taken\n");
+    EXPECT_EQ(warnings_of("geometry: capsule, body_width: 60, radius: 20"),
+              "x.yaml:2: objects.o.radius: is no size of this shape; body_height is missing, and 10 mm is taken\n");
     EXPECT_NE(warnings_of("geometry: triangle, radius: 40").find("side_length is missing"), std::string::npos);
     EXPECT_EQ(warnings_of("geometry: disk, radius: 20, body_width: 60"), "");  // as before the disk was a box
     EXPECT_EQ(warnings_of("geometry: capsule"), "");
