@@ -18,6 +18,7 @@ try:
     import pogosim
     import shapely
     import yaml
+    from pogosim.picture.layers import placed
     from pogosim.shapes import Shape, shape_of
 except ImportError as missing:
     if __name__ != "__main__":
@@ -59,18 +60,12 @@ def overlap_mm(a: Floats, b: Floats) -> float:
     return max(0.0, float(depths.min()))
 
 
-def placed(outline: Floats, x: float, y: float, heading: float) -> Floats:
-    """Return the outline of a body at its place."""
-    turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
-    return np.asarray(outline @ turn + [x, y])
-
-
 def deepest_overlap_mm(poses: Floats, shapes: list[Shape]) -> float:
     """The deepest overlap of two convex bodies at one time. `poses`: x, y and heading, of shape (bodies, 3)."""
     reach = np.array([shape.bounding_radius_mm for shape in shapes])
     near = np.linalg.norm(poses[:, None, :2] - poses[None, :, :2], axis=-1) < reach[:, None] + reach[None]
     convex = [shape.kind != "compound" for shape in shapes]
-    outlines = [placed(shape.outline(), *pose) for shape, pose in zip(shapes, poses, strict=True)]
+    outlines = [placed(shape.outline(), pose[None, :2], pose[2:])[0] for shape, pose in zip(shapes, poses, strict=True)]
     return max(
         (
             overlap_mm(outlines[i], outlines[j])

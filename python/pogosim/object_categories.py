@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import pandas as pd
 from pogosim.arguments import number
 from pogosim.batch.paths import set_in_dict
 from pogosim.run_columns import is_one_run
-from pogosim.scene import RAYS, SPOTS, TALKERS, bodies_of, entries, read_kinds, read_periodic, type_of
+from pogosim.scene import RAYS, SPOTS, TALKERS, Kind, bodies_of, entries, read_periodic, type_of
 from pogosim.several_files import configuration_of
 
 IDS_ON_AIR = 65536
@@ -82,12 +83,19 @@ def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: M
     return names
 
 
-def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[np.int64]:
+def last_kinds(rows: pd.DataFrame, kinds: list[Kind]) -> npt.NDArray[np.int64]:
+    """Return the place of the last kind of the category of each row, shape (rows,); -1: there is none."""
+    last = {kind.category: place for place, kind in enumerate(kinds)}
+    return np.array(rows["robot_category"].map(last).fillna(-1), dtype=np.int64)
+
+
+def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
     """Return which of the entries of the configuration (`pogosim.scene.bodies_of`) the object of each row is of.
 
     Args:
         rows: Those of one run, with the column robot_category.
         configuration: That of the run.
+        kinds: What `pogosim.scene.read_kinds` makes of it.
 
     Returns:
         Shape (rows,), integers; -1: of a category that is not in the configuration.
@@ -95,11 +103,9 @@ def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[n
     Raises:
         UnknownCategoriesError: The entries of a category differ, and nothing says which objects are whose.
     """
-    kinds = read_kinds(configuration)
-    last = {kind.category: place for place, kind in enumerate(kinds)}
     names = rows["robot_category"]
-    numbers: npt.NDArray[np.int64] = np.array(names.map(last).fillna(-1), dtype=np.int64)
-    differ = {kind.category for kind in kinds if kind != kinds[last[kind.category]]}
+    numbers = last_kinds(rows, kinds)
+    differ = {one.category for one, other in combinations(kinds, 2) if one.category == other.category and one != other}
     is_told_by_id = np.asarray(names.isin(differ))
     if not is_told_by_id.any():
         return numbers

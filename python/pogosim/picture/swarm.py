@@ -15,7 +15,7 @@ from pogosim.arguments import Arguments
 from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.errors import PictureError
 from pogosim.far_away import is_near
-from pogosim.object_categories import UnknownCategoriesError, kinds_of, with_categories
+from pogosim.object_categories import UnknownCategoriesError, kinds_of, last_kinds, with_categories
 from pogosim.outputs import PathLike
 from pogosim.picture.body_links import BodyLinks, read_body_links
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
@@ -169,9 +169,10 @@ def read_recording(
     if color_by not in (None, SPEED, "led_rgb"):
         checked_column(rows, str(color_by))
     configuration = configuration_of(metadata)
-    kinds = [*read_kinds(configuration), UNKNOWN]
+    kinds = read_kinds(configuration)
     rows = with_categories(rows, metadata)
-    rows = completed(with_defaults(rows.assign(**{KIND: kind_numbers(rows, configuration)})))
+    rows = completed(with_defaults(rows.assign(**{KIND: kind_numbers(rows, configuration, kinds)})))
+    kinds.append(UNKNOWN)
     is_periodic = read_periodic(configuration)
     top_speed_mm_s = read_top_speed(configuration)
     if color_by == SPEED:
@@ -223,20 +224,19 @@ def completed(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(**{OBJECT: rows.groupby(["robot_category", "robot_id"], sort=True).ngroup()})
 
 
-def kind_numbers(rows: pd.DataFrame, configuration: dict[str, Any]) -> npt.NDArray[np.int64]:
+def kind_numbers(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
     """Return the place in Swarm.kinds of each row; of an entry of its category where nothing says of which."""
     try:
-        return kinds_of(rows, configuration)
+        return kinds_of(rows, configuration, kinds)
     except UnknownCategoriesError:
-        last = {kind.category: number for number, kind in enumerate(read_kinds(configuration))}
-        lists = sorted(name for name in last if isinstance(configuration["objects"][name], list))
+        lists = sorted({kind.category for kind in kinds if isinstance(configuration["objects"][kind.category], list)})
         warnings.warn(
             f"nothing says which objects of {', '.join(lists)} are of which entry of the list (nb, robot_id), so all "
             "are drawn as those of the last one",
             RuntimeWarning,
             stacklevel=3,
         )
-        return np.asarray(rows["robot_category"].map(last).fillna(-1), dtype=np.int64)
+        return last_kinds(rows, kinds)
 
 
 def is_of_type(rows: pd.DataFrame, kinds: list[Kind], types: Sequence[str]) -> npt.NDArray[np.bool_]:
