@@ -160,43 +160,33 @@ void require_list(MapReader const& reader, std::string_view key, std::string_vie
     }
 }
 
-/// The keys that say how large a shape is. Empty: it needs them, or has none.
-std::vector<std::string_view> own_size_keys(ShapeKind kind) {
-    switch (kind) {
-        case ShapeKind::disk:
-            return {"radius"};
-        case ShapeKind::rectangle:
-        case ShapeKind::capsule:
-            return {"body_width", "body_height"};
-        case ShapeKind::triangle:
-            return {"side_length"};
-        case ShapeKind::polygon:
-        case ShapeKind::compound:
-        case ShapeKind::global:
-        case ShapeKind::arena:
-            break;
-    }
-    return {};
-}
-
-/// Warns of a size that is that of another shape, where the shape's own is left to its default.
+/// Warns of a size that is that of another shape, where one of the shape's own is left to its default.
 void look_at_sizes(MapReader const& reader, Shape const& shape) {
-    constexpr std::array<std::string_view, 5> kSizes{"radius", "body_width", "body_height", "side_length", "corners"};
-    std::vector<std::string_view> const own = own_size_keys(shape.kind);
-    auto const is_given = [&](std::string_view key) { return reader.find(key) != nullptr; };
-    auto const other = std::ranges::find_if(
-        kSizes, [&](std::string_view key) { return is_given(key) && std::ranges::find(own, key) == own.end(); });
-    std::vector<std::string_view> missing;
-    std::ranges::remove_copy_if(own, std::back_inserter(missing), is_given);
-    if (missing.empty() || other == kSizes.end()) {
-        return;
+    if (shape.kind == ShapeKind::polygon) {
+        return;  // has no default
     }
-    float const size_mm = shape.kind == ShapeKind::disk       ? shape.radius_mm
-                          : shape.kind == ShapeKind::triangle ? shape.side_length_mm
-                          : missing.front() == own.front()    ? shape.width_mm
-                                                              : shape.height_mm;
-    log().warn("{}: {}: is no size of this shape; {} {} missing, and {:g} mm is taken", reader.find(*other)->where(),
-               reader.path_of(*other), fmt::join(missing, " and "), missing.size() > 1 ? "are" : "is", size_mm);
+    Node const* other = nullptr;
+    std::string_view name;  // of the other one's key
+    std::vector<std::string_view> missing;
+    float default_mm = 0.0F;
+    for (K const& key : size_keys()) {
+        if (key.name == "corner_radius") {
+            continue;  // sharp corners are meant where it is missing
+        }
+        Node const* const given = reader.find(key.name);
+        bool const is_own = key.has_effect(shape);
+        if (is_own && given == nullptr) {
+            missing.push_back(key.name);
+            default_mm = shape.*std::get<float Shape::*>(key.field);
+        } else if (!is_own && other == nullptr && given != nullptr) {
+            other = given;
+            name = key.name;
+        }
+    }
+    if (other != nullptr && !missing.empty()) {
+        log().warn("{}: {}: is no size of this shape; {} {} missing, and {:g} mm is taken", other->where(),
+                   reader.path_of(name), fmt::join(missing, " and "), missing.size() > 1 ? "are" : "is", default_mm);
+    }
 }
 
 /// To hundredths, for a message.
