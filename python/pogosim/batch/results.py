@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 
 from pogosim.batch.errors import BatchError, cannot, is_whole, one_line
@@ -83,13 +84,32 @@ def joint_schema(schemas: Sequence[pa.Schema]) -> pa.Schema:
         raise BatchError(f"runs have columns that do not fit together: {one_line(error)}") from None
 
 
+def constant_column(value: Any, kind: pa.DataType, count: int) -> pa.Array:
+    """Return a column with one value in all rows; pa.scalar() would import pandas, which takes as long as 100 runs."""
+    if value is None:
+        return pa.nulls(count, kind)
+    if pa.types.is_string(kind):
+        text = value.encode()
+        ends = np.arange(count + 1, dtype=np.int32) * np.int32(len(text))
+        return pa.Array.from_buffers(kind, count, [None, pa.py_buffer(ends), pa.py_buffer(text * count)])
+    if pa.types.is_boolean(kind):
+        values = np.packbits(np.full(count, value), bitorder="little")
+    elif kind == pa.int64():
+        values = np.full(count, value, dtype=np.int64)
+    elif kind == pa.float64():
+        values = np.full(count, value, dtype=np.float64)
+    else:
+        return pa.repeat(pa.scalar(value, kind), count)
+    return pa.Array.from_buffers(kind, count, [None, pa.py_buffer(values)])
+
+
 def with_columns(batch: pa.RecordBatch, schema: pa.Schema, constants: dict[str, Any]) -> pa.RecordBatch:
     """Return rows with all columns of a schema: constant ones, and null where the run has no such column."""
     own = {name: batch.column(i) for i, name in enumerate(batch.schema.names)}
     columns = []
     for field in schema:
         if field.name in constants:
-            columns.append(pa.repeat(pa.scalar(constants[field.name], field.type), batch.num_rows))
+            columns.append(constant_column(constants[field.name], field.type, batch.num_rows))
         elif field.name in own:
             column = own[field.name]
             is_old_time = field.name == "time" and column.type == pa.float32() and field.type == pa.float64()
