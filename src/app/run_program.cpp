@@ -9,6 +9,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <optional>
@@ -20,6 +21,7 @@
 
 #include "app/command_line.hpp"
 #include "app/restart.hpp"
+#include "app/run_server.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/floating_point.hpp"
@@ -273,18 +275,8 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     std::_Exit(static_cast<int>(code));
 }
 
-}  // namespace
-
-void pogosim_guard_process() {
-    take_process();
-    catch_interrupts();
-}
-
-int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
-    if (is_forked_child()) {
-        end_forked_child(0);  // forked by a constructor; the run belongs to the parent
-    }
-    enter_stage(RunStage::preparing);
+/// One run, or what else the command line asks for. Returns the exit code.
+int run_as_told(pogosim_program const& program, int argc, char** argv) {
     StandardFloatingPoint const mode;  // a program that was compiled with -Ofast has set another one
     ParsedCommandLine const parsed = parse_command_line(argc, argv);
     if (parsed.exit_code) {
@@ -296,8 +288,8 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
     ExitCode& code = ended.code;
     try {
         ignore_broken_outputs();
-        ended = parsed.options.check_config ? check(*program, parsed.options)
-                                            : simulate(*program, parsed.options, folder, take_restart());
+        ended = parsed.options.check_config ? check(program, parsed.options)
+                                            : simulate(program, parsed.options, folder, take_restart());
         check_logs();
     } catch (OutOfMemory const& error) {
         end_short_of_memory(error.what());
@@ -329,4 +321,28 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
         std::_Exit(static_cast<int>(code));
     }
     return static_cast<int>(code);
+}
+
+}  // namespace
+
+void pogosim_guard_process() {
+    take_process();
+    catch_interrupts();
+    expect_run_server();
+}
+
+int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
+    if (is_forked_child()) {
+        end_forked_child(0);  // forked by a constructor; the run belongs to the parent
+    }
+    enter_stage(RunStage::preparing);
+    if (is_run_server()) {
+        return serve_runs(linked_program(*program, process_name()), [&](std::vector<std::string> arguments) {
+            std::vector<char*> words{argv[0]};
+            std::ranges::transform(arguments, std::back_inserter(words), [](auto& word) { return word.data(); });
+            words.push_back(nullptr);
+            return run_as_told(*program, static_cast<int>(words.size()) - 1, words.data());
+        });
+    }
+    return run_as_told(*program, argc, argv);
 }

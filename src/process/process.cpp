@@ -50,6 +50,7 @@ void end_process(int code) {
 namespace {
 
 std::atomic<bool> forked = false;
+bool forks_executable = false;
 
 /// Otherwise the child would inherit the parent's unwritten output and also write it.
 void before_fork() {
@@ -59,6 +60,9 @@ void before_fork() {
 }
 
 void in_child() {
+    if (forks_executable) {
+        return;
+    }
     if (!process_is_ours() && active_handler == nullptr) {
         return;  // a child of the host's own
     }
@@ -78,6 +82,13 @@ void watch_for_forks() {
 
 bool is_forked_child() {
     return forked.load(std::memory_order_relaxed);
+}
+
+pid_t fork_executable() {
+    forks_executable = true;
+    pid_t const child = fork();
+    forks_executable = false;
+    return child;
 }
 
 void end_forked_child(int status) {

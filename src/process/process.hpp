@@ -2,6 +2,8 @@
 // other work to do.
 #pragma once
 
+#include <sys/types.h>
+
 namespace pogosim {
 
 /// This process is an executable made of a program: from now on its crashes and children are reported, also before
@@ -28,6 +30,9 @@ void watch_for_forks();
 
 /// True in a child.
 bool is_forked_child();
+
+/// As fork(), with a child that is an executable of its own, in which everything is as it was here.
+pid_t fork_executable();
 
 /// Ends the child: flushes its own output, without calling any handler or destructor of the run.
 [[noreturn]] void end_forked_child(int status);

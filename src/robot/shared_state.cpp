@@ -298,6 +298,10 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
     return "";
 }
 
+std::string why_run_is_not_repeated(ProgramImage const& image) {
+    return image.constructors ? "the program constructs static objects" : why_state_is_not_copied(image);
+}
+
 std::string function_that_calls_back(ProgramImage const& image) {
     for (std::string const& name : image.symbols().imports) {
         if (name == "qsort" || name == "bsearch") {

@@ -21,6 +21,10 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
 /// program and in user data, and not in memory that it allocates, nor in a library that it calls.
 std::string why_state_is_not_copied(ProgramImage const& image);
 
+/// Why runs of a program cannot follow each other in one process, with its variables set back in between; empty: they
+/// can. As a state that cannot be copied, and static objects in C++, which would be constructed again.
+std::string why_run_is_not_repeated(ProgramImage const& image);
+
 /// A function of the C library that the program uses, and that calls the program's own code while it keeps values in
 /// memory of its own, as qsort() may; empty: there is none.
 std::string function_that_calls_back(ProgramImage const& image);

@@ -15,6 +15,7 @@
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "process/elf_file.hpp"
+#include "process/process.hpp"
 #include "robot/shared_state.hpp"
 
 #ifdef POGOSIM_HAS_LIBDW
@@ -32,8 +33,12 @@ struct Found {
     bool is_certain = true;
 };
 
-/// Whether this is the first time in the process.
+/// Whether the program was not looked at before: in a host, which may make many runs of it. Runs of an executable are
+/// each one of its own.
 bool is_new(ProgramImage const& image) {
+    if (process_is_ours()) {
+        return true;
+    }
     using Program = std::pair<std::filesystem::path, std::filesystem::file_time_type>;
     static std::mutex mutex;
     static std::set<Program> known;
