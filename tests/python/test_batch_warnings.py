@@ -10,7 +10,7 @@ from typing import cast
 import pytest
 from batches import batch, script, start_batch, write_options
 from pogosim.batch.reports import SHOWN_WARNINGS, report_warnings
-from pogosim.batch.run import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
+from pogosim.batch.run_log import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
 from pogosim.batch.running import Running, Watch
 from running import compile_text
 

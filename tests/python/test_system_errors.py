@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 import pytest
 from batches import batch, write_options
-from pogosim.batch import run as batch_run
+from pogosim.batch import attempts
 from pogosim.command.main import main
 from pogosim.optimize import history
 from pogosim.outputs import partial_output
@@ -66,7 +66,7 @@ def test_full_disk_of_temporary_files_is_not_told_by_the_name_of_the_program(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write_options(tmp_path)
-    monkeypatch.setattr(batch_run, "write_configuration", disk_is_full)
+    monkeypatch.setattr(attempts, "configuration_in", disk_is_full)
     result = batch(tmp_path)
     assert result.code == 2
     (line,) = result.errors.splitlines()

@@ -14,8 +14,10 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
+from pogosim.batch.attempts import do_run
 from pogosim.batch.errors import BatchError, at_least
-from pogosim.batch.run import Outcome, Task, do_run, simulators
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.simulators import simulators
 from pogosim.batch.slurm_options import CORES, SlurmJobs
 
 Outcomes = Generator[Outcome, None, None]
@@ -38,6 +40,7 @@ class Workers:
         number: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
         slurm_jobs: Jobs of SLURM that do the runs.
+        is_isolated: Each run is a process of its own; else, one process may do many, one after the other.
 
     Raises:
         BatchError: These do not go together.
@@ -47,6 +50,7 @@ class Workers:
     number: int | None = None
     scheduler: str | None = None
     slurm_jobs: SlurmJobs | None = None
+    is_isolated: bool = False
 
     def __post_init__(self) -> None:
         if self.backend not in BACKENDS:
@@ -142,6 +146,7 @@ def by_threads(workers: int, threads: int) -> Iterator[Do]:
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+        simulators.close()
 
 
 BACKENDS: dict[str, Callable[[Workers], AbstractContextManager[Do]]] = {

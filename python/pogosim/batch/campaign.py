@@ -74,6 +74,7 @@ def run_local_campaign(
     retries: int = 5,
     retry_new_seed: bool = True,
     keep_temp: bool = False,
+    isolated: bool = False,
     progress: bool = False,
     gui: bool = False,
     simulator_output: str = "normal",
@@ -95,6 +96,7 @@ def run_local_campaign(
         retries: How many times a failed run is repeated.
         retry_new_seed: With another seed, see `pogosim.batch.seeds.replacements`; False: with the same one.
         keep_temp: Keep the folders of single runs, each with its `pogobatch_task.json`.
+        isolated: Each run is a process of its own; else, one process may do many, one after the other.
         progress: Say how many runs are done, also where there is no terminal.
         gui: Let each run open its window.
         simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
@@ -113,6 +115,7 @@ def run_local_campaign(
         str(given.path("output_dir", output_dir)),
         backend=backend,
         keep_temp=keep_temp,
+        isolated=isolated,
         retries=retries,
         gui=gui,
         only_output=only_output or "",

@@ -10,8 +10,9 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from typing import Any
 
+from pogosim.batch.attempts import do_run
 from pogosim.batch.errors import BatchError, one_line
-from pogosim.batch.run import Outcome, Task, do_run
+from pogosim.batch.run import Outcome, Task
 from pogosim.extras import installing
 
 CONNECT_S = 5

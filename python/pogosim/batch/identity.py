@@ -52,11 +52,24 @@ def find_program(name: str) -> Path:
     if is_firmware(path):
         return path.absolute()
     is_script = content.startswith(b"#!") or path.suffix == PYTHON
-    if not is_script and not (content.startswith(EXECUTABLES) and MARK in content):
+    if not is_script and not is_of_simulator(content):
         raise BatchError(f"{name} is not a simulator; {expected}")
     if path.suffix != PYTHON and shutil.which(str(path.absolute())) is None:
         raise BatchError(f"the simulator {name} is not executable; chmod +x {name}")
     return path.absolute()
+
+
+def is_of_simulator(content: bytes) -> bool:
+    """Tell whether this is the content of an executable that is a program of the simulator."""
+    return content.startswith(EXECUTABLES) and MARK in content
+
+
+def is_executable_program(path: Path) -> bool:
+    """Tell whether a file is an executable that is a program of the simulator, no script that starts one."""
+    try:
+        return is_of_simulator(path.read_bytes())
+    except OSError:
+        return False
 
 
 def digest_of(path: Path) -> str:

@@ -12,8 +12,9 @@ from pogosim.batch.combinations import variants_of
 from pogosim.batch.configuration import BatchLoader, Configuration, line_of
 from pogosim.batch.option_words import CHOICES, DOMAIN, HIERARCHICAL_OPTIONS, LIST, identities
 from pogosim.batch.paths import get_by_dotted_path
-from pogosim.batch.run import OWN, Task
+from pogosim.batch.run import Task
 from pogosim.batch.run_files import is_nested
+from pogosim.batch.run_log import OWN
 
 Path = tuple[str, ...]
 

@@ -22,8 +22,9 @@ from pogosim.batch.names import ambiguous, new_columns, value_at
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import write_results
-from pogosim.batch.run import Outcome, RunSettings, with_last_line
+from pogosim.batch.run import Outcome, RunSettings
 from pogosim.batch.run_data import RunFile
+from pogosim.batch.run_log import with_last_line
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.utils import load_dataframe
@@ -108,7 +109,14 @@ class Runs:
         batch = batch_name([str(configuration.path), output_dir, program])
         self.temporary = TemporaryFolder(Path(temp_base).absolute(), batch, keep_temp)
         self.settings = RunSettings(
-            path, program_digest(path), beside, self.temporary, retries, gui=False, retry_new_seed=retry_new_seed
+            path,
+            program_digest(path),
+            beside,
+            self.temporary,
+            retries,
+            gui=False,
+            retry_new_seed=retry_new_seed,
+            is_isolated=workers.is_isolated,
         )
         self.file_digests: dict[Path, str] = {}
         world = world_digest(configuration.entries, self.settings.folders, self.file_digests)
@@ -132,6 +140,7 @@ class Runs:
                 self.temporary.forget_finished_runs()
             finally:
                 self.do = None
+                self.temporary.remove_leftovers()  # of workers that were killed
                 self.temporary.tidy([])
 
     def rows_of(

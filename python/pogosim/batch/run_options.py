@@ -57,6 +57,9 @@ def add_choice_options(options: argparse.ArgumentParser) -> None:
     add("--json", action="store_true", help="print what was done as JSON, and all else on standard error")
 
 
+ISOLATED = "make a process for each run; else, one process does many runs if the program allows it"
+
+
 def add_run_options(options: argparse.ArgumentParser) -> None:
     """Add what says how runs are done."""
     add = options.add_argument
@@ -74,6 +77,7 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
     add("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
     add_slurm_options(options)
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
+    add("--isolated", action="store_true", help=ISOLATED)
     add("--gui", action="store_true", help="let each run open its window")
     add("--progress", action="store_true", help="say how many runs are done, also where there is no terminal")
     add("-v", "--verbose", action="store_true", help="also say tasks, rows, and which runs failed")
@@ -157,4 +161,5 @@ def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchR
         retry_new_seed=is_campaign if arguments.retry_new_seed is None else arguments.retry_new_seed,
         with_seeds=is_campaign,
         progress=arguments.progress,
+        isolated=arguments.isolated,
     )

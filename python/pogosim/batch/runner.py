@@ -70,6 +70,7 @@ class PogobotBatchRunner:
             the same one.
         with_seeds: Add the columns `seed` and `retry_attempt` to the results, and a manifest to their metadata.
         progress: Say how many runs are done also where there is no terminal.
+        isolated: Each run is a process of its own; else, one process may do many, one after the other.
         simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
             robots also print what they usually do into the logs of their runs, which stay with `keep_temp`.
 
@@ -107,6 +108,7 @@ class PogobotBatchRunner:
         retry_new_seed: bool = False,
         with_seeds: bool = False,
         progress: bool = False,
+        isolated: bool = False,
         simulator_output: str = "normal",
     ) -> None:
         self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
@@ -125,7 +127,7 @@ class PogobotBatchRunner:
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
-        self.workers = Workers(backend, workers, scheduler, slurm_jobs)
+        self.workers = Workers(backend, workers, scheduler, slurm_jobs, isolated)
         self.keep_temp = keep_temp
         self.verbose = verbose
         self.retries = at_least(0, retries, "--retries")
@@ -320,6 +322,7 @@ class PogobotBatchRunner:
             gui=self.gui,
             retry_new_seed=self.retry_new_seed,
             says=SIMULATOR_OUTPUTS[self.simulator_output],
+            is_isolated=self.workers.is_isolated,
         )
         with self.temporary.locked():
             self.temporary.remove_leftovers()

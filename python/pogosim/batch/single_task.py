@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.attempts import attempt_in
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program
@@ -18,9 +19,11 @@ from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns
-from pogosim.batch.run import EFFECTIVE, FRAMES, Outcome, RunSettings, Task, attempt_in, simulators, with_last_line
+from pogosim.batch.run import FRAMES, Outcome, RunSettings, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
+from pogosim.batch.run_log import EFFECTIVE, with_last_line
 from pogosim.batch.seeds import listed_seeds
+from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike

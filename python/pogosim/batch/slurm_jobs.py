@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.batch.errors import BatchError, one_line, tell
-from pogosim.batch.run import tail
+from pogosim.batch.run_log import tail
 from pogosim.lines import counted
 
 COMMANDS = ("sbatch", "squeue", "scancel")

@@ -6,7 +6,9 @@ import importlib
 import time
 from typing import Any
 
-from pogosim.batch.run import Outcome, StoppedError, Task, do_run, simulators
+from pogosim.batch.attempts import do_run
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.simulators import StoppedError, simulators
 
 SIGNALLED_S = 2.0
 
@@ -14,6 +16,7 @@ SIGNALLED_S = 2.0
 def dask_teardown(worker: Any) -> None:  # noqa: ARG001
     """End simulators with the worker: it would wait for them when the batch was killed."""
     simulators.stop()
+    simulators.close()
 
 
 def do_in_job(task: Task) -> Outcome:

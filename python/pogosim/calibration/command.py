@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pogosim.batch.ending import catch_signals
+from pogosim.batch.run_options import ISOLATED
 from pogosim.calibration.parameters import NAMES
 from pogosim.calibration.results import LINES, PICTURE, RESULT, write_protocol
 from pogosim.calibration.unit_names import ANGLES_RAD, LENGTHS_MM
@@ -58,6 +59,7 @@ def parser(prog: str) -> Parser:
     made.add_argument(
         "-j", "--workers", type=whole(1, 10**4), metavar="N", help="runs at the same time (one per processor)"
     )
+    made.add_argument("--isolated", action="store_true", help=ISOLATED)
     return made
 
 

@@ -113,7 +113,14 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
         results_folder(Path(options.output_dir), (RESULT, LINES, PICTURE), [options.tracks, options.config])
     with tempfile.TemporaryDirectory(prefix="pogosim-calibrate-") as folder:
         program = compiled(options.simulator_binary, Path(folder))
-        runs = Runs(configuration, str(program), folder, folder, Workers(number=options.workers), retries=0)
+        runs = Runs(
+            configuration,
+            str(program),
+            folder,
+            folder,
+            Workers(number=options.workers, is_isolated=options.isolated),
+            retries=0,
+        )
         with runs.opened():
             scene = read_scene(runs, entries, category)
             prepared = prepare(prog, options, scene)

@@ -14,7 +14,7 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.ending import catch_signals, start_logging
 from pogosim.batch.errors import reason
 from pogosim.batch.names import NamesError
-from pogosim.batch.run_options import INTERRUPTED, WRONG, add_retry_options, check_names
+from pogosim.batch.run_options import INTERRUPTED, ISOLATED, WRONG, add_retry_options, check_names
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
 from pogosim.errors import AmbiguousStepsWarning, ToolError
@@ -79,6 +79,7 @@ def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
     add_quality_diversity_options(options, usual)
     group = options.add_argument_group("workers")
     group.add_argument("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
+    group.add_argument("--isolated", action="store_true", help=ISOLATED)
     group.add_argument(
         "--candidate-jobs", type=int, metavar="N", help=f"candidates at the same time ({usual.candidate_jobs})"
     )

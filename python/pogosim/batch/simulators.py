@@ -1,0 +1,157 @@
+"""The simulators that run for a batch: each a process of its own, or in a process that does many runs."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from shutil import which
+
+from pogosim.batch.run import RunSettings
+from pogosim.batch.run_log import LOG
+from pogosim.batch.run_server import RunServer, RunServers, ServerLostError
+from pogosim.batch.running import Watch
+
+# Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
+WATCHED = ("setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] && exec "$@"')
+
+
+class StoppedError(Exception):
+    """The batch ends; the run was not done."""
+
+
+class Simulators:
+    """The simulators of this process, so that they can be ended."""
+
+    def __init__(self) -> None:
+        self.watch = Watch()
+        self.is_stopping = False
+        self.slots: contextlib.AbstractContextManager[object] = contextlib.nullcontext()
+        self.servers = RunServers()
+
+    def begin(self, at_once: int) -> None:
+        """Let this number of simulators run at the same time; others wait for their turn."""
+        self.is_stopping = False
+        self.watch.begin()
+        self.slots = threading.BoundedSemaphore(at_once)
+
+    def run(self, command: Sequence[str], folder: Path, settings: RunSettings) -> tuple[int, float]:
+        """Run a program to its end, in a process of its own.
+
+        Args:
+            command: Its command line.
+            folder: Of the run, where its log is written.
+            settings: Of all runs.
+
+        Returns:
+            Its exit code, or minus the signal that ended it; and its wall-clock time in s.
+
+        Raises:
+            OSError: It cannot be started.
+            StoppedError: The batch ends.
+        """
+        with self.slots:
+            started_s = time.monotonic()
+            code = self.run_now(command, folder / LOG, settings)
+            return code, time.monotonic() - started_s
+
+    def run_now(self, command: Sequence[str], log: Path, settings: RunSettings) -> int:
+        """Do what `run` does, at once; returns the exit code."""
+        if self.is_stopping:
+            raise StoppedError
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                [*watch(), *command],
+                cwd=settings.working_folder,
+                env=os.environ | settings.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,  # Ctrl-C reaches the batch alone
+            )
+        try:
+            with self.running(process, log):
+                code = process.wait()
+        except BaseException:
+            end(process)
+            raise
+        if self.is_stopping:
+            raise StoppedError
+        return code
+
+    @contextlib.contextmanager
+    def server(self, command: Sequence[str], settings: RunSettings) -> Iterator[RunServer | None]:
+        """Have a server of runs of a program; None: it serves none. A server that is lost meanwhile is ended.
+
+        Args:
+            command: The start of its command line, which every run has.
+            settings: Of all runs.
+
+        Raises:
+            StoppedError: The batch ends.
+        """
+        with self.slots:
+            server = self.servers.taken(command, settings, watch)
+            try:
+                yield server
+            except BaseException as error:
+                if server is not None:
+                    end(server.process)
+                    server.close()
+                if self.is_stopping and isinstance(error, ServerLostError):
+                    raise StoppedError from None
+                raise
+            if server is not None:
+                self.servers.give_back(server)
+
+    @contextlib.contextmanager
+    def running(self, process: subprocess.Popen[bytes], log: Path) -> Iterator[None]:
+        """Let a process run meanwhile; it is killed if the batch ends."""
+        running = self.watch.add(process, log)
+        try:
+            if self.is_stopping:
+                kill(process)
+            yield
+        finally:
+            self.watch.remove(running)
+
+    def stop(self) -> None:
+        """End all simulators, and let none begin."""
+        self.is_stopping = True
+        with self.watch.lock:
+            for running in self.watch.running:
+                kill(running.process)
+
+    def close(self) -> None:
+        """End what waits for runs."""
+        self.servers.close()
+
+
+simulators = Simulators()
+atexit.register(simulators.close)
+
+
+def kill(process: subprocess.Popen[bytes]) -> None:
+    """End a program and what it has started."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def end(process: subprocess.Popen[bytes]) -> None:
+    """End a program, and wait until it has ended."""
+    kill(process)
+    process.wait()
+
+
+def watch() -> list[str]:
+    """Return the start of a command line with which a program ends when this process does; empty where it cannot."""
+    if sys.platform != "linux" or which(WATCHED[0]) is None:
+        return []
+    return [*WATCHED, str(os.getpid())]

@@ -1,0 +1,221 @@
+"""Runs of a batch that one process does, one after the other: each is what it is in a process of its own."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from batches import batch, results, write_options
+from pogosim.batch.run import RunSettings
+from pogosim.batch.run_server import RunServer, RunServers, ServerLostError
+from pogosim.batch.temporary import TemporaryFolder
+from running import Run, compile_text, example, write_scene
+
+IN_PLACE = "a process does many runs, one after the other"
+COPIES = "each run is a copy of a process: "
+ALONE = "each run is a process of its own: "
+
+# What a run may leave behind: variables of all kinds, the random stream, what the main loop is told.
+PROGRAM = """
+#include "pogobase.h"
+{includes}
+typedef struct {{ int steps; }} USERDATA;
+DECLARE_USERDATA(USERDATA);
+REGISTER_USERDATA(USERDATA);
+static int starts;
+int set = 7;
+static void step(void) {{
+    static int calls;
+    mydata->steps += ++calls;
+    if (pogobot_ticks == 3) {{
+        set += rand() % 100;
+        main_loop_hz = 50;
+    }}
+    {step}
+}}
+static void init(void) {{
+    ++starts;
+    {init}
+}}
+static void export_schema(void) {{
+    data_add_column_int32("starts");
+    data_add_column_int32("set");
+    data_add_column_int32("steps");
+    data_add_column_int32("random");
+}}
+static void export_data(void) {{
+    data_set_value_int32("starts", starts);
+    data_set_value_int32("set", set);
+    data_set_value_int32("steps", mydata->steps);
+    data_set_value_int32("random", rand());
+}}
+int main(void) {{
+    pogobot_init();
+    set += 1;
+    SET_CALLBACK(callback_create_data_schema, export_schema);
+    SET_CALLBACK(callback_export_data, export_data);
+    pogobot_start(init, step);
+    return 0;
+}}
+"""
+
+
+def program(folder: Path, includes: str = "", step: str = "", init: str = "", name: str = "main.c") -> Path:
+    """Compile a program whose rows show what robots share."""
+    return compile_text(folder, PROGRAM.format(includes=includes, step=step, init=init), name)
+
+
+def both_ways(folder: Path, runs: Path, *more: str) -> tuple[Run, Run]:
+    """Do a batch of five runs of two configurations with and without processes of their own, side by side."""
+    done = []
+    for name, options in (("shared", ()), ("isolated", ("--isolated",))):
+        write_options(folder / name)
+        done.append(batch(folder / name, "-r", "5", "-j", "2", "-R", "0", *options, *more, program=runs))
+    return done[0], done[1]
+
+
+def check_same(folder: Path, shared: Run, isolated: Run) -> None:
+    """Check that two ways have written and said the same."""
+    assert (shared.code, shared.output, without_folder(shared)) == (
+        isolated.code,
+        isolated.output,
+        without_folder(isolated),
+    )
+    assert results(folder / "shared") == results(folder / "isolated")
+
+
+def without_folder(result: Run) -> str:
+    """Return what a batch has said of its runs: not how they were done, nor in which temporary folder."""
+    lines = re.sub(r"\[20[^\]]*\] ", "", result.errors.replace("isolated", "shared")).splitlines()
+    return "\n".join(sorted(line for line in lines if "/tmp/sim_" not in line))  # warnings come as runs end
+
+
+def said_how(folder: Path, runs: Path) -> str:
+    """Return what a batch says of how it does its runs."""
+    write_options(folder)
+    result = batch(folder, "-r", "2", "-v", program=runs)
+    assert result.code == 0, result.errors
+    (line,) = (line for line in result.errors.splitlines() if IN_PLACE in line or COPIES in line or ALONE in line)
+    return line.partition(": ")[2]
+
+
+@pytest.mark.parametrize(
+    ("parts", "how"),
+    [
+        ({}, IN_PLACE),
+        (
+            {"includes": "#include <string.h>", "step": 'char t[] = "a b"; strtok(t, " ");'},
+            f"{COPIES}the program uses 'strtok', which",
+        ),
+        ({"includes": "#include <stdlib.h>", "init": "mydata->steps = malloc(99) != 0;"}, f"{COPIES}the program alloc"),
+        (
+            {"includes": "#include <vector>\nstatic std::vector<int> all(3);", "name": "main.cpp"},
+            f"{COPIES}the program",
+        ),
+    ],
+    ids=["plain", "strtok", "malloc", "c++"],
+)
+def test_runs_of_one_process_are_those_of_processes_of_their_own(
+    parts: dict[str, str], how: str, tmp_path: Path
+) -> None:
+    runs = program(tmp_path, **parts)
+    check_same(tmp_path, *both_ways(tmp_path, runs))
+    assert said_how(tmp_path / "how", runs).startswith(how)
+
+
+@pytest.mark.parametrize(
+    "constructor",
+    [
+        '#include <unistd.h>\n__attribute__((constructor)) static void say(void) { write(2, "hello\\n", 6); }',
+        '#include <fcntl.h>\n__attribute__((constructor)) static void take(void) { open("/dev/null", O_RDONLY); }',
+        "#include <pthread.h>\n#include <unistd.h>\nstatic void* wait(void* p) { pause(); return p; }\n"
+        "__attribute__((constructor)) static void begin(void) { pthread_t t; pthread_create(&t, 0, wait, 0); }",
+    ],
+    ids=["prints", "opens", "thread"],
+)
+def test_program_that_does_something_before_main_has_a_process_for_each_run(constructor: str, tmp_path: Path) -> None:
+    runs = program(tmp_path, includes=constructor)
+    assert said_how(tmp_path / "how", runs) == f"{ALONE}{runs} cannot do several"
+    check_same(tmp_path, *both_ways(tmp_path, runs))
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "if (rand() % 200 == 0) *(volatile int*)0 = 1;",
+        "if (rand() % 200 == 0) __builtin_trap();",
+        "if (rand() % 200 == 0) exit(5);",
+        "if (rand() % 200 == 0) exit(0);",
+    ],
+    ids=["writes at 0", "traps", "exits with 5", "ends its run"],
+)
+def test_runs_that_fail_fail_alone_and_with_the_same_message(step: str, tmp_path: Path) -> None:
+    shared, isolated = both_ways(tmp_path, program(tmp_path, includes="#include <stdlib.h>", step=step))
+    check_same(tmp_path, shared, isolated)
+    assert shared.code == (0 if "exit(0)" in step else 3)
+
+
+def test_warnings_of_runs_are_the_same(tmp_path: Path) -> None:
+    runs = program(tmp_path)
+    done = []
+    for name, options in (("shared", ()), ("isolated", ("--isolated",))):
+        write_options(tmp_path / name, {"arena_surfaces": 3})
+        done.append(batch(tmp_path / name, "-r", "3", *options, program=runs))
+    check_same(tmp_path, *done)
+    assert "arena_surfaces" in done[0].errors
+
+
+@pytest.mark.parametrize("name", ["hanabi", "run_and_tumble", "vicsek", "push_sum", "ssr", "walls", "question"])
+def test_examples_do_the_same(name: str, tmp_path: Path) -> None:
+    check_same(tmp_path, *both_ways(tmp_path, example(name)))
+
+
+# ---- One server ----
+
+
+def settings_in(folder: Path, runs: Path) -> RunSettings:
+    """Return what all runs in a folder have in common."""
+    return RunSettings(runs, "", folder, TemporaryFolder(folder, "batch", is_kept=False), retries=0, gui=False)
+
+
+def test_server_is_gone_after_a_run_that_fails(tmp_path: Path) -> None:
+    runs = example("helloworld")
+    server = RunServer([str(runs)], settings_in(tmp_path, runs), [])
+    path = write_scene(tmp_path, {"simulation_time": 0.1})
+    server.run(["-c", str(path), "-g", "--set", f"data_filename={server.outputs}/data.feather"])
+    assert (server.runs, sorted(file.name for file in server.outputs.iterdir())) == (1, ["data.feather"])
+    server.clear()
+    assert list(server.outputs.iterdir()) == []
+    for _ in range(2):
+        with pytest.raises(ServerLostError):
+            server.run(["-c", "missing.yaml", "-g"])
+    assert "missing.yaml" in server.log.read_text()
+    assert server.process.wait(timeout=10) != 0
+    server.close()
+    assert not server.folder.exists()
+
+
+def test_server_ends_with_its_stream(tmp_path: Path) -> None:
+    runs = example("helloworld")
+    server = RunServer([str(runs)], settings_in(tmp_path, runs), [])
+    server.close()
+    assert server.process.returncode == 0
+
+
+def test_servers_are_used_again_and_not_for_others_settings(tmp_path: Path) -> None:
+    runs = example("helloworld")
+    servers, settings = RunServers(), settings_in(tmp_path, runs)
+    first = servers.taken([str(runs)], settings, list)
+    assert first is not None
+    servers.give_back(first)
+    assert servers.taken([str(runs)], settings, list) is first
+    servers.give_back(first)
+    other = servers.taken([str(runs)], replace(settings, configuration_folder=tmp_path / "else"), list)
+    assert other is not None
+    assert other is not first
+    servers.give_back(other)
+    assert servers.taken(["/bin/true"], settings, list) is None
+    servers.close()
+    assert (first.process.returncode, other.process.returncode) == (0, 0)
