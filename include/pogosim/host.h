@@ -22,6 +22,9 @@ typedef struct pogosim_run pogosim_run;
 /// A copy of the state of a run.
 typedef struct pogosim_state pogosim_state;
 
+/// Threads on which many runs go on.
+typedef struct pogosim_threads pogosim_threads;
+
 /// As exit codes of a program. After anything but POGOSIM_OK and POGOSIM_OVER of a step, the run is over and its files
 /// are complete.
 enum pogosim_status {
@@ -231,6 +234,38 @@ int pogosim_run_restore_state(pogosim_run* run, pogosim_state const* state);
 
 /// Gives the memory of a state back, also after pogosim_run_close().
 void pogosim_state_free(pogosim_state* state);
+
+/// What pogosim_threads_step() is to do with a run, and has done.
+struct pogosim_turn {
+    int64_t left;          ///< steps to make; those that were made are taken off
+    int32_t status;        ///< as of pogosim_run_step(); a run makes steps while it is POGOSIM_OK
+    int32_t has_messages;  ///< not 0: pogosim_run_messages() has some
+};
+
+/// Makes `count` threads, 1 to 1024, which wait for work; fewer if the system cannot make so many.
+int pogosim_threads_open(int count, pogosim_threads** threads);
+
+/// Many runs make the steps that are left, as many at a time as there are threads, each by pogosim_run_step(). No run
+/// begins a further step after `budget_s` seconds, but each makes at least one. The call fails with the first run that
+/// fails in it; the others go on nevertheless. A run may be given only once.
+int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, struct pogosim_turn* turns, size_t count,
+                         double budget_s);
+
+/// What went wrong in the last call for the run of this index; empty: nothing.
+char const* pogosim_threads_error(pogosim_threads const* threads, size_t run);
+
+/// Ends the threads. The runs stay open. NULL does nothing.
+void pogosim_threads_close(pogosim_threads* threads);
+
+/// Copies an array of many runs, one after the other: that of pogosim_run_array(), or, if `category` is not NULL, of
+/// pogosim_run_brain_array(). Arrays of bodies ("bodies.position") have a row for each robot in place of one for each
+/// body, NaN for robots without one. `bytes_each`: size of the array of one run; it fails where that is another one.
+int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* category, char const* name, void* into,
+                      size_t bytes_each);
+
+/// The reverse, for arrays of pogosim_run_brain_array() that can be written.
+int pogosim_runs_write(pogosim_run* const* runs, size_t count, char const* category, char const* name, void const* from,
+                       size_t bytes_each);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

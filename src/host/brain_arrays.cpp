@@ -78,14 +78,18 @@ HostBrain& brain_of(pogosim_run& run, std::string_view category) {
 
 }  // namespace
 
+pogosim_array pogosim::brain_array_of(pogosim_run& run, std::string_view category, std::string_view name) {
+    HostBrain& brain = brain_of(run, category);
+    auto const* const found = std::ranges::find(kArrays, name, &NamedArray::name);
+    if (found == kArrays.end()) {
+        throw ConfigError(fmt::format("a brain has no array '{}'", name));
+    }
+    return found->describe(brain);
+}
+
 int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* name, pogosim_array* array) {
     return with_status_of(*run, [&] {
-        HostBrain& brain = brain_of(*run, category);
-        auto const* const found = std::ranges::find(kArrays, std::string_view(name), &NamedArray::name);
-        if (found == kArrays.end()) {
-            throw ConfigError(fmt::format("a brain has no array '{}'", name));
-        }
-        *array = found->describe(brain);
+        *array = brain_array_of(*run, category, name);
         return POGOSIM_OK;
     });
 }

@@ -55,6 +55,7 @@ public:
 
     std::string const& categories() const { return categories_; }
     std::string const& columns() const { return columns_; }
+    bool has_messages() const { return !lines_.empty(); }
     std::string const& take_messages();
 
     std::uint64_t const number;  // no other run of this process has it
@@ -86,6 +87,9 @@ struct RunFailure : std::runtime_error {
 
 /// The array of this name; nothing if there is none.
 std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
+
+/// An array of a category that this process drives. Throws ConfigError if there is none.
+pogosim_array brain_array_of(pogosim_run& run, std::string_view category, std::string_view name);
 
 /// The array of a column of the data file.
 std::optional<pogosim_array> column_array_of(SavedColumns const& saved, std::string_view name);

@@ -87,10 +87,6 @@ bool writes(SystemCall const& call) {
 
 class BlockedWatch {
 public:
-    BlockedWatch() : process_(getpid()) {}
-
-    bool is_of_this_process() const { return process_ == getpid(); }
-
     void begin(CrashHandlerState& handler) {
         std::lock_guard const lock(mutex_);
         watched_.push_back({.handler = &handler});
@@ -174,26 +170,36 @@ private:
         return true;
     }
 
-    pid_t process_;
     std::mutex mutex_;
     std::vector<Watched> watched_;
     bool has_thread_ = false;
 };
 
-/// Never destroyed, since its thread may outlive the last run. A child of fork() has no such thread.
+/// Never destroyed, since its thread may outlive the last run.
 std::atomic<BlockedWatch*> watch_of_process = nullptr;
+
+/// The id of this thread; 0: not asked yet.
+constinit thread_local pid_t this_thread_id = 0;
 
 }  // namespace
 
+void forget_blocked_in_child() {
+    watch_of_process = nullptr;  // its thread is not there
+    this_thread_id = 0;
+}
+
 void watch_over_blocked(CrashHandlerState& handler) {
     static std::mutex making;
-    handler.thread_id = static_cast<pid_t>(syscall(SYS_gettid));
+    if (this_thread_id == 0) {
+        this_thread_id = static_cast<pid_t>(syscall(SYS_gettid));
+    }
+    handler.thread_id = this_thread_id;
     handler.thread_of_code = handler.running.of_this_thread();
     BlockedWatch* watch = watch_of_process;
-    if (watch == nullptr || !watch->is_of_this_process()) {
+    if (watch == nullptr) {
         std::lock_guard const lock(making);
         watch = watch_of_process;
-        if (watch == nullptr || !watch->is_of_this_process()) {
+        if (watch == nullptr) {
             watch = new BlockedWatch;
             watch_of_process = watch;
         }
@@ -203,7 +209,7 @@ void watch_over_blocked(CrashHandlerState& handler) {
 
 void end_watch_over_blocked(CrashHandlerState& handler) {
     BlockedWatch* const watch = watch_of_process;
-    if (watch != nullptr && watch->is_of_this_process()) {
+    if (watch != nullptr) {
         watch->end(handler);
     }
 }
@@ -216,6 +222,7 @@ namespace pogosim {
 
 void watch_over_blocked(CrashHandlerState& /*handler*/) {}
 void end_watch_over_blocked(CrashHandlerState& /*handler*/) {}
+void forget_blocked_in_child() {}
 
 }  // namespace pogosim
 

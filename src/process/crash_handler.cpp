@@ -20,6 +20,7 @@
 namespace pogosim {
 
 constinit thread_local CrashHandlerState* active_handler = nullptr;
+constinit thread_local ThreadTimers* timers_of_thread = nullptr;
 constinit std::atomic<CrashHandlerState*> process_run = nullptr;
 
 namespace {
@@ -161,11 +162,7 @@ void catch_crashes_of_process() {
 }
 
 CrashHandlerState::CrashHandlerState(RunningCode const& running_code, void const* in_program, double timeout_s)
-    : running(running_code),
-      program_base(object_of(in_program)),
-      busy{.timeout_s = timeout_s},
-      processor_timer(TimerClock::processor, SIGPROF, this),
-      wall_timer(TimerClock::wall, SIGALRM, this) {}
+    : running(running_code), program_base(object_of(in_program)), busy{.timeout_s = timeout_s} {}
 
 void CrashHandler::Destroy::operator()(CrashHandlerState* state) const {
     std::destroy_at(state);
@@ -188,9 +185,11 @@ bool CrashHandler::was_interrupted() const {
 
 CrashHandlerScope::CrashHandlerScope(CrashHandler& handler) : handler_(*handler.state_), before_(active_handler) {
     if (handler_.depth++ == 0) {
-        caught_signals.need();
+        if (timers_of_thread == nullptr) {
+            caught_signals.need();
+            stack_.emplace();
+        }
         watch_for_forks();
-        stack_.emplace();
         handler_.thread = pthread_self();
         handler_.inside = false;
         start_watch(handler_);
@@ -203,9 +202,23 @@ CrashHandlerScope::~CrashHandlerScope() {
     if (--handler_.depth == 0) {
         end_watch_over_blocked(handler_);
         stop_watch(handler_);
-        caught_signals.need_no_more();
+        if (timers_of_thread == nullptr) {
+            caught_signals.need_no_more();
+        }
     }
     active_handler = before_;
+}
+
+ThreadOfRuns::ThreadOfRuns() : timers_(std::make_unique<ThreadTimers>()) {
+    caught_signals.need();
+    timers_of_thread = timers_.get();
+}
+
+ThreadOfRuns::~ThreadOfRuns() {
+    timers_->processor.remove();
+    timers_->wall.remove();
+    timers_of_thread = nullptr;
+    caught_signals.need_no_more();
 }
 
 WorkerCrashHandler::WorkerCrashHandler(CrashHandler& run)

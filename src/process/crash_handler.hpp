@@ -115,6 +115,22 @@ private:
     StandardFloatingPoint mode_{};
 };
 
+struct ThreadTimers;
+
+/// While this exists, the calling thread works for many runs in turn: handlers of signals, their stack and timers stay
+/// from one CrashHandlerScope to the next, which costs less than to make them each time.
+class ThreadOfRuns {
+public:
+    ThreadOfRuns();
+    ~ThreadOfRuns();
+    ThreadOfRuns(ThreadOfRuns const&) = delete;
+    ThreadOfRuns& operator=(ThreadOfRuns const&) = delete;
+
+private:
+    SignalStackScope stack_{};
+    std::unique_ptr<ThreadTimers> timers_;
+};
+
 /// While this exists, signals that ask this process to end belong to that run, and so do crashes in threads that the
 /// program has started: an executable has one run at a time. Created in the thread that works for the run.
 class ProcessRun {

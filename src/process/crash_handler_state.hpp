@@ -102,8 +102,8 @@ struct CrashHandlerState {
     ProcessorWatch busy;
     WallClockWatch waiting;
     RescueWatch rescue;
-    ThreadTimer processor_timer;
-    ThreadTimer wall_timer;
+    ThreadTimers own_timers;
+    ThreadTimers* timers = &own_timers;  // or those of its thread, see ThreadOfRuns
 
     // The watch over calls that block, see watch_over_blocked(): of the thread that runs user code.
     pid_t thread_id = 0;
@@ -118,6 +118,9 @@ struct CrashHandlerState {
 
 /// The run for which this thread works; null: none.
 extern constinit thread_local CrashHandlerState* active_handler;
+
+/// What the thread keeps from run to run; null: nothing.
+extern constinit thread_local ThreadTimers* timers_of_thread;
 
 /// The run that an executable is for: signals from outside, and crashes of unknown threads, are for it. Null
 /// before and after it, and in other processes.
@@ -185,5 +188,8 @@ void stop_watch(CrashHandlerState& handler);
 /// The calling thread runs user code for this handler from now on, until end_watch_over_blocked().
 void watch_over_blocked(CrashHandlerState& handler);
 void end_watch_over_blocked(CrashHandlerState& handler);
+
+/// In a child of fork(), in the thread that is left.
+void forget_blocked_in_child();
 
 }  // namespace pogosim

@@ -60,6 +60,7 @@ void before_fork() {
 }
 
 void in_child() {
+    forget_blocked_in_child();
     if (forks_executable) {
         return;
     }

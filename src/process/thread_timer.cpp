@@ -41,6 +41,7 @@ void ThreadTimer::arm(double period_s) {
     times.it_value = times.it_interval;
     timer_settime(timer_, 0, &times, nullptr);
     is_armed_ = true;
+    period_s_ = period_s;
 }
 
 void ThreadTimer::remove() {
@@ -62,6 +63,7 @@ void ThreadTimer::arm(double period_s) {
     times.it_value = times.it_interval;
     setitimer(clock_ == TimerClock::processor ? ITIMER_PROF : ITIMER_REAL, &times, nullptr);
     exists_ = is_armed_ = true;
+    period_s_ = period_s;
 }
 
 void ThreadTimer::remove() {

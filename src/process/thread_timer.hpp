@@ -1,6 +1,7 @@
-// A timer that sends signals to one thread.
+// Timers that send signals to one thread.
 #pragma once
 
+#include <csignal>
 #include <ctime>
 
 namespace pogosim {
@@ -30,6 +31,7 @@ public:
     void remove();
 
     bool is_armed() const { return is_armed_; }
+    double period_s() const { return period_s_; }  // while it is armed
 
 private:
     TimerClock clock_;
@@ -37,9 +39,21 @@ private:
     void* owner_;
     bool exists_ = false;
     bool is_armed_ = false;
+    double period_s_ = 0.0;
 #ifdef __linux__
     timer_t timer_{};
 #endif
+};
+
+/// Those of the watch over user code. Their signals have the address of this in siginfo_t::si_value.
+struct ThreadTimers {
+    ThreadTimers() = default;
+    ~ThreadTimers() = default;
+    ThreadTimers(ThreadTimers const&) = delete;
+    ThreadTimers& operator=(ThreadTimers const&) = delete;
+
+    ThreadTimer processor{TimerClock::processor, SIGPROF, this};
+    ThreadTimer wall{TimerClock::wall, SIGALRM, this};
 };
 
 }  // namespace pogosim

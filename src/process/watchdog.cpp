@@ -42,14 +42,22 @@ double thread_processor_time_s() {
 /// The run whose timer has sent this signal to this thread; null: it is not from one of them.
 CrashHandlerState* run_of(siginfo_t const& info) {
     CrashHandlerState* const handler = active_handler;
-    bool const is_timers = info.si_code != SI_TIMER || info.si_value.sival_ptr == handler;  // or sent by hurry()
-    return handler != nullptr && is_timers ? handler : nullptr;
+    bool const is_run =
+        handler != nullptr && (info.si_code != SI_TIMER || info.si_value.sival_ptr == handler->timers);  // or hurry()
+    return is_run ? handler : nullptr;
+}
+
+/// Passes on a signal that is for no run, unless a timer has sent it that goes on between the runs of this thread.
+void pass_on_others(int signal, siginfo_t* info, void* signal_context) {
+    if (info->si_code != SI_TIMER || timers_of_thread == nullptr || info->si_value.sival_ptr != timers_of_thread) {
+        pass_on(signal, info, signal_context);
+    }
 }
 
 void on_watch(int signal, siginfo_t* info, void* signal_context) {
     CrashHandlerState* const run = run_of(*info);
     if (run == nullptr) {
-        pass_on(signal, info, signal_context);
+        pass_on_others(signal, info, signal_context);
         return;
     }
     CrashHandlerState& handler = *run;
@@ -60,7 +68,7 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
         busy.seen_at_s = now_s;
         if (busy.retrying) {
             busy.retrying = false;
-            handler.processor_timer.arm(busy.period_s);
+            handler.timers->processor.arm(busy.period_s);
         }
         return;
     }
@@ -71,7 +79,7 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
     if (!is_in_user_program(handler, signal_context) && too_long_s < kLongestRetryS) {
         if (!busy.retrying) {
             busy.retrying = true;
-            handler.processor_timer.arm(kRetryPeriodS);
+            handler.timers->processor.arm(kRetryPeriodS);
         }
         return;
     }
@@ -166,7 +174,7 @@ void look_after_rescue(CrashHandlerState& handler, double now_s) {
 void on_look(int signal, siginfo_t* info, void* signal_context) {
     CrashHandlerState* const run = run_of(*info);
     if (run == nullptr) {
-        pass_on(signal, info, signal_context);
+        pass_on_others(signal, info, signal_context);
         return;
     }
     CrashHandlerState& handler = *run;
@@ -229,7 +237,7 @@ void request_end(CrashHandlerState& handler, char const* what, ExitCode code, bo
     request.place = place;
     request.made_s = monotonic_s();
     handler.request_state = RequestState::made;
-    handler.wall_timer.arm(kRetryPeriodS);
+    handler.timers->wall.arm(kRetryPeriodS);
 }
 
 void drop_end_request(CrashHandlerState& handler) {
@@ -251,8 +259,9 @@ void give_back_watch_signals() {
 }
 
 void start_watch(CrashHandlerState& handler) {
+    handler.timers = timers_of_thread != nullptr ? timers_of_thread : &handler.own_timers;
     handler.is_watching = true;
-    handler.wall_timer.prepare();
+    handler.timers->wall.prepare();
     if (handler.left_by_force) {
         watch_rescue(handler);
     }
@@ -260,20 +269,28 @@ void start_watch(CrashHandlerState& handler) {
         handler.busy.calls_seen = 0;
         handler.busy.retrying = false;
         handler.busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
-        handler.processor_timer.arm(handler.busy.period_s);
+        ThreadTimer& timer = handler.timers->processor;
+        if (!timer.is_armed() || timer.period_s() != handler.busy.period_s) {
+            timer.arm(handler.busy.period_s);
+        }
     }
 }
 
 void watch_rescue(CrashHandlerState& handler, double grace_s) {
     handler.rescue = {.writes_seen = save_progress().writes, .last_write_s = monotonic_s(), .grace_s = grace_s};
     catch_signal(SIGALRM, SA_RESTART, on_look);  // the program may have taken it
-    handler.wall_timer.arm(kRescueLookPeriodS);
+    handler.timers->wall.arm(kRescueLookPeriodS);
 }
 
 void stop_watch(CrashHandlerState& handler) {
     handler.is_watching = false;
-    handler.processor_timer.remove();
-    handler.wall_timer.remove();
+    bool const stays = handler.timers == timers_of_thread;
+    if (!stays) {
+        handler.timers->processor.remove();
+    }
+    if (!stays || handler.timers->wall.is_armed()) {
+        handler.timers->wall.remove();
+    }
 }
 
 void hurry_user_code(CrashHandlerState& handler, char const* request_name) {
@@ -289,7 +306,7 @@ void hurry_user_code(CrashHandlerState& handler, char const* request_name) {
     if (handler.inside && now_s - entered_s > kPromptReturnS) {
         tell_what_is_waited_for(handler);
     }
-    handler.wall_timer.arm(kLookPeriodS);
+    handler.timers->wall.arm(kLookPeriodS);
     for (CrashHandlerState* helper = handler.helpers; helper != nullptr; helper = helper->next_helper) {
         hurry_thread(*helper, request_name);
     }

@@ -1,0 +1,181 @@
+// Many runs on the threads of a host.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "base/error.hpp"
+#include "host/hosted_run.hpp"
+#include "host/status.hpp"
+#include "process/crash_handler.hpp"
+
+using namespace pogosim;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostHostThreads = 1024;
+
+/// What one call asks for.
+struct Work {
+    std::span<pogosim_run* const> runs{};
+    std::span<pogosim_turn> turns{};
+    std::span<std::string> errors{};
+    Clock::time_point deadline{};
+};
+
+double seconds_until(Clock::time_point when) {
+    return std::chrono::duration<double>(when - Clock::now()).count();
+}
+
+void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {
+    {
+        std::lock_guard const lock(run.in_use);
+        if (turn.status == POGOSIM_OK && run.is_over()) {
+            turn.status = run.has_failed() ? POGOSIM_USAGE : POGOSIM_OVER;
+            error = run.has_failed() ? "the run has failed: reset it" : "";
+        }
+    }
+    if (turn.left > 0 && turn.status == POGOSIM_OK) {
+        std::int64_t done = 0;
+        turn.status = pogosim_run_step(&run, turn.left, budget_s, &done);
+        turn.left -= done;
+        if (turn.status != POGOSIM_OK && turn.status != POGOSIM_OVER) {
+            error = pogosim_host_error();
+        }
+    }
+    std::lock_guard const lock(run.in_use);
+    turn.has_messages = run.has_messages() ? 1 : 0;
+}
+
+}  // namespace
+
+/// As declared in pogosim/host.h. The thread that calls step() works, too.
+struct pogosim_threads {
+public:
+    explicit pogosim_threads(int count) {
+        for (int i = 1; i < count; ++i) {
+            try {
+                threads_.emplace_back([this] { serve(); });
+            } catch (std::system_error const&) {
+                break;  // there are fewer
+            }
+        }
+    }
+
+    ~pogosim_threads() {
+        {
+            std::lock_guard const lock(mutex_);
+            is_closed_ = true;
+        }
+        has_work_.notify_all();
+        for (std::thread& thread : threads_) {
+            thread.join();
+        }
+    }
+
+    pogosim_threads(pogosim_threads const&) = delete;
+    pogosim_threads& operator=(pogosim_threads const&) = delete;
+
+    int step(std::span<pogosim_run* const> runs, std::span<pogosim_turn> turns, double budget_s) {
+        std::lock_guard const one_call(in_use_);
+        errors_.assign(runs.size(), {});
+        auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
+        {
+            std::lock_guard const lock(mutex_);
+            work_ = {.runs = runs,
+                     .turns = turns,
+                     .errors = errors_,
+                     .deadline = std::chrono::time_point_cast<Clock::duration>(deadline)};
+            next_ = 0;
+            ++call_;
+            working_ = static_cast<int>(threads_.size());
+        }
+        has_work_.notify_all();
+        take_turns();
+        std::unique_lock lock(mutex_);
+        has_ended_.wait(lock, [this] { return working_ == 0; });
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            if (!errors_[i].empty()) {
+                return failed(errors_[i], turns[i].status);
+            }
+        }
+        return POGOSIM_OK;
+    }
+
+    char const* error(std::size_t run) const { return run < errors_.size() ? errors_[run].c_str() : ""; }
+
+private:
+    void take_turns() {
+        ThreadOfRuns const thread;
+        for (std::size_t i = next_++; i < work_.runs.size(); i = next_++) {
+            make_turn(*work_.runs[i], work_.turns[i], work_.errors[i], seconds_until(work_.deadline));
+        }
+    }
+
+    void serve() {
+        std::uint64_t seen = 0;
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            has_work_.wait(lock, [&] { return is_closed_ || call_ != seen; });
+            if (is_closed_) {
+                return;
+            }
+            seen = call_;
+            lock.unlock();
+            take_turns();
+            lock.lock();
+            if (--working_ == 0) {
+                has_ended_.notify_one();
+            }
+        }
+    }
+
+    std::mutex in_use_;
+    std::vector<std::thread> threads_;
+    std::vector<std::string> errors_;
+
+    std::mutex mutex_;  // protects what follows but the next index
+    std::condition_variable has_work_;
+    std::condition_variable has_ended_;
+    Work work_;
+    std::uint64_t call_ = 0;
+    int working_ = 0;  // threads that may still work at this call
+    bool is_closed_ = false;
+    std::atomic<std::size_t> next_ = 0;  // run to take
+};
+
+int pogosim_threads_open(int count, pogosim_threads** threads) {
+    *threads = nullptr;
+    return with_status([&] {
+        if (count < 1 || count > kMostHostThreads) {
+            throw ConfigError(
+                fmt::format("threads: expected a number from 1 to {}, found {}", kMostHostThreads, count));
+        }
+        *threads = std::make_unique<pogosim_threads>(count).release();
+        return POGOSIM_OK;
+    });
+}
+
+int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, pogosim_turn* turns, size_t count,
+                         double budget_s) {
+    return with_status([&] { return threads->step({runs, count}, {turns, count}, budget_s); });
+}
+
+char const* pogosim_threads_error(pogosim_threads const* threads, size_t run) {
+    return threads->error(run);
+}
+
+void pogosim_threads_close(pogosim_threads* threads) {
+    delete threads;
+}
