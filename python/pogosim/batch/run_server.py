@@ -37,7 +37,7 @@ class RunServer:
 
     Args:
         command: The start of the program's command line, which every run has.
-        settings: Of all runs.
+        settings: What all runs have in common.
         start: The start of a command line with which the process ends when this one does.
 
     Attributes:
@@ -170,7 +170,7 @@ class RunServers:
     def taken(
         self, command: Sequence[str], settings: RunSettings, start: Callable[[], Sequence[str]]
     ) -> RunServer | None:
-        """Return a server that nobody else uses, a new one if there is none; None: the program serves no runs."""
+        """Return a server that is free, a new one if there is none; None: the program serves no runs."""
         with self.lock:
             if tuple(command) in self.refused:
                 return None

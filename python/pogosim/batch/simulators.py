@@ -47,8 +47,8 @@ class Simulators:
 
         Args:
             command: Its command line.
-            folder: Of the run, where its log is written.
-            settings: Of all runs.
+            folder: The folder of the run, where its log is written.
+            settings: What all runs have in common.
 
         Returns:
             Its exit code, or minus the signal that ended it; and its wall-clock time in s.
@@ -92,7 +92,7 @@ class Simulators:
 
         Args:
             command: The start of its command line, which every run has.
-            settings: Of all runs.
+            settings: What all runs have in common.
 
         Raises:
             StoppedError: The batch ends.

@@ -14,10 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import check_process
+from pogosim.simulation.arrays import RunState, check_process
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.library import OK
+from pogosim.simulation.many_runs import ManyRuns, RunThreads, all_held
 from pogosim.simulation.objects import chosen_index
-from pogosim.simulation.run import CLOSED, Simulation, checked_seed
+from pogosim.simulation.run import CLOSED, MOST_STEPS, Simulation, checked_seed
+from pogosim.simulation.vector_brain import VectorBrain
 
 MOST_THREADS = 1024
 MOST_RUNS = 100_000
@@ -51,6 +54,11 @@ def call_with_run(function: Callable[[Simulation], T], simulation: Simulation, i
         raise type(error)(f"run {index}: {error}") from None
 
 
+def present(simulation: Simulation) -> RunState:
+    """Return the present run of a simulation."""
+    return simulation._run
+
+
 def alike(arrays: list[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
     """Return arrays that can be stacked.
 
@@ -76,7 +84,7 @@ class VectorSimulation:
 
     def __init__(
         self,
-        program: PathLike,
+        program: PathLike | None,
         configuration: PathLike,
         seeds: Sequence[int] | range,
         *,
@@ -99,12 +107,16 @@ class VectorSimulation:
         self._process = os.getpid()
         self._is_closed = False
         self.simulations: list[Simulation] = []
+        self._stepping = RunThreads(min(count, max(1, len(chosen_seeds))))
+        self._many = ManyRuns([])
+        self._brains: dict[str, VectorBrain] = {}
         begun = [
             self._threads.submit(Simulation, program, configuration, seed=seed, **options) for seed in chosen_seeds
         ]
         try:
             wait(begun)
             self.simulations = [run.result() for run in begun]
+            self._locks = [simulation._lock for simulation in self.simulations]
         except BaseException:
             self._threads.shutdown(cancel_futures=True)
             for run in begun:
@@ -159,8 +171,63 @@ class VectorSimulation:
                 simulation._current.should_pause = False
 
     def step(self, steps: int = 1) -> list[int]:
-        """Go on with all of them, see `Simulation.step`. Returns how many steps each has made."""
-        return self.each(lambda simulation: simulation.step(steps))
+        """Go on with all of them, see `Simulation.step`: one call of the library for all. Returns the steps of each.
+
+        If some runs fail, the others go on, and the first of the errors comes when all are ready. After Ctrl-C, runs
+        stop between two time steps.
+        """
+        steps = given.integer("steps", steps, least=0)
+        check_process(self._process)
+        self._check_outside("each, step and reset")
+        runs = self._runs()
+        failed: dict[int, SimulationError] = {}
+        with all_held(self._locks):
+            for brain in self._brains.values():
+                brain._write(runs)
+            turns = runs.turns
+            turns["left"], turns["status"] = min(steps, MOST_STEPS), OK
+            is_first = True
+            while is_first or ((turns["left"] > 0) & (turns["status"] == OK)).any():
+                is_first = False
+                try:
+                    failed |= self._stepping.step(runs.pointers, turns)
+                finally:
+                    for run in np.flatnonzero(turns["has_messages"]).tolist():
+                        self.simulations[run]._pass_messages_on()
+            for brain in self._brains.values():
+                brain._read(runs)
+        if failed:
+            run = min(failed)
+            raise type(failed[run])(f"run {run}: {failed[run]}")
+        return [min(steps, MOST_STEPS) - left for left in turns["left"].tolist()]
+
+    def _runs(self) -> ManyRuns:
+        """Return the present runs; after a reset of one, there are others."""
+        if self._is_closed:
+            raise SimulationError(CLOSED)
+        states = [simulation._current.run for simulation in self.simulations]
+        if states != self._many.states:
+            self._many = ManyRuns(
+                [call_with_run(present, simulation, index) for index, simulation in enumerate(self.simulations)]
+            )
+        return self._many
+
+    def brain(self, category: str) -> VectorBrain:
+        """Return the arrays that drive the robots of a category in all runs, see `VectorBrain`.
+
+        Raises:
+            ConfigurationError: There is no such category, something else drives its robots, or runs have different
+                numbers of them.
+        """
+        name = given.text("category", category)
+        self._runs()  # raises if they are closed
+        if name not in self._brains:
+            sizes = {len(simulation.brain(name)) for simulation in self.simulations}
+            if len(sizes) != 1:
+                found = " and ".join(map(str, sorted(sizes))) or "no runs"
+                raise ConfigurationError(f"the brains of all runs need the same number of robots, found {found}")
+            self._brains[name] = VectorBrain(self._runs, name, *sizes)
+        return self._brains[name]
 
     def reset(self, seeds: Sequence[int] | range | None = None) -> None:
         """Begin all of them again, with these seeds or their own."""
@@ -173,7 +240,36 @@ class VectorSimulation:
     @property
     def positions(self) -> npt.NDArray[Any]:
         """Positions of all robots, mm. Shape (runs, robots, 2); a copy. All runs must have as many robots."""
-        return np.stack(alike([simulation.positions for simulation in self.simulations]))
+        return self._read("bodies.position", lambda simulation: simulation.positions)
+
+    @property
+    def headings(self) -> npt.NDArray[Any]:
+        """Headings of all robots, rad, clockwise on the screen, not wrapped. Shape (runs, robots); a copy."""
+        return self._read("bodies.heading", lambda simulation: simulation.headings)
+
+    @property
+    def velocities(self) -> npt.NDArray[Any]:
+        """Velocities of all robots in the last step, mm/s. Shape (runs, robots, 2); a copy."""
+        return self._read("bodies.velocity", lambda simulation: simulation.velocities)
+
+    @property
+    def leds(self) -> npt.NDArray[Any]:
+        """Colours of the LEDs, as of `Simulation.leds`. Shape (runs, robots, 5, 3); a copy."""
+        return self._read("robots.led", lambda simulation: simulation.leds)
+
+    def _read(self, name: str, of_one: Callable[[Simulation], npt.NDArray[Any]]) -> npt.NDArray[Any]:
+        """Return an array of all runs, by one call of the library."""
+        check_process(self._process)
+        if not self.simulations:
+            return np.stack(alike([]))
+        runs = self._runs()
+        like = of_one(self.simulations[0])
+        into = np.empty((len(self.simulations), *like.shape), dtype=like.dtype)
+        try:
+            runs.read(name, into)
+        except ConfigurationError:
+            return np.stack(alike([of_one(simulation) for simulation in self.simulations]))
+        return into
 
     def column(self, name: str) -> Any:
         """Return a column that the program has added to the data file, at the last save of each run.
@@ -201,6 +297,8 @@ class VectorSimulation:
         self._is_closed = True
         for simulation in self.simulations:
             simulation.close()
+        self._many = ManyRuns([])
+        self._stepping.close()
         self._threads.shutdown(wait=os.getpid() == self._process)
 
     def __len__(self) -> int:

@@ -1,0 +1,128 @@
+"""Runs that are stepped together, and read together, by one call of the library each."""
+
+from __future__ import annotations
+
+import os
+import weakref
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from ctypes import byref, c_void_p
+from threading import Lock
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.lines import printable
+from pogosim.simulation.arrays import RunState
+from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
+from pogosim.simulation.library import OK, OVER, PROGRAM_FAILED, Turn, check, library
+from pogosim.simulation.run import SLICE_S
+
+FAILED_BEFORE = "the run has failed: reset it"
+IN_USE = "a simulation is in use by another thread: give each thread one of its own"
+
+
+def close_threads(handle: c_void_p, process: int) -> None:
+    """End the threads of a handle, unless this is a forked child, which has none of them."""
+    if os.getpid() == process:
+        library().pogosim_threads_close(handle)
+
+
+class RunThreads:
+    """Threads of the library on which many runs go on.
+
+    Args:
+        count: How many runs go on at a time.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._handle = c_void_p()
+        check(library().pogosim_threads_open(count, byref(self._handle)))
+        self.close = weakref.finalize(self, close_threads, self._handle, os.getpid())
+
+    def step(self, pointers: Any, turns: npt.NDArray[Any]) -> dict[int, SimulationError]:
+        """Let runs make steps for a while, each at least one. Returns what went wrong, by the index of the run.
+
+        Args:
+            pointers: An array of the library's pointers to them.
+            turns: What each is to do, and has done: of type Turn, shape (runs,).
+        """
+        where, count = turns.ctypes.data, len(turns)
+        if library().pogosim_threads_step(self._handle, pointers, where, count, SLICE_S) == OK:
+            return {}
+        failed = np.flatnonzero((turns["status"] != OK) & (turns["status"] != OVER))
+        found = {}
+        for run in failed.tolist():
+            if text := library().pogosim_threads_error(self._handle, run):
+                found[run] = failure(int(turns["status"][run]), printable(text.decode("utf-8", "replace")))
+        return found
+
+
+def failure(status: int, message: str) -> SimulationError:
+    """Return the error of a run."""
+    if message == FAILED_BEFORE:
+        return SimulationError(message)
+    return (ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError)(message)
+
+
+class ManyRuns:
+    """The present runs of many simulations.
+
+    Args:
+        states: They, in order.
+    """
+
+    def __init__(self, states: Sequence[RunState]) -> None:
+        self.states = list(states)
+        self.pointers = (c_void_p * len(self.states))(*(state.pointer.value for state in self.states))
+        self.turns = np.zeros(len(self.states), dtype=np.dtype(Turn))
+
+    def read(self, name: str, into: npt.NDArray[Any], category: str | None = None, run: int | None = None) -> None:
+        """Copy an array of each run, see pogosim_runs_read().
+
+        Args:
+            name: Its name in the library.
+            into: Where to, without gaps. Shape (runs, ...).
+            category: That of a brain; None: it is one of the run itself.
+            run: Copy that of one run alone.
+
+        Raises:
+            ConfigurationError: The arrays of some runs have other shapes.
+        """
+        self._copy(library().pogosim_runs_read, name, into, category, run)
+
+    def write(self, name: str, values: npt.NDArray[Any], category: str) -> None:
+        """Copy values into an array of the brain of each run, see pogosim_runs_write(). Shape (runs, ...)."""
+        self._copy(library().pogosim_runs_write, name, values, category, None)
+
+    def _copy(self, function: Any, name: str, values: npt.NDArray[Any], category: str | None, run: int | None) -> None:
+        if not len(values):
+            return
+        of_category = None if category is None else category.encode()
+        size = values.strides[0] if values[0].size else 0
+        pointers, place, count = self.pointers, values.ctypes.data, len(values)
+        if run is not None:
+            pointers, place, count = (c_void_p * 1)(self.pointers[run]), place + run * size, 1
+        check(function(pointers, count, of_category, name.encode(), place, size))
+
+
+@contextmanager
+def all_held(locks: Sequence[Lock]) -> Iterator[None]:
+    """Hold the locks of simulations meanwhile.
+
+    Raises:
+        SimulationError: Another thread has one of them.
+    """
+    held: list[Lock] = []
+    try:
+        for lock in locks:
+            held.append(lock)  # before it is: Ctrl-C may come in between
+            if not lock.acquire(blocking=False):
+                held.pop()
+                raise SimulationError(IN_USE)
+        yield
+    finally:
+        for lock in held:
+            with suppress(RuntimeError):  # it was not held yet
+                lock.release()

@@ -1,0 +1,159 @@
+"""Many runs that go on by one call: arrays of all of them, and brains whose rows are runs and robots."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pogosim
+import pytest
+from running import example, write_scene
+
+ROBOTS = 3
+SCENE: dict[str, Any] = {
+    "arena_surface": 1e6,
+    "simulation_time": 10,
+    "enable_data_logging": False,
+    "objects.robots.nb": ROBOTS,
+    "objects.robots.brain": "host",
+    "objects.robots.msg_success_rate": {"type": "static", "rate": 1.0},
+}
+
+
+def many(folder: Path, runs: int = 4, threads: int = 2, **changes: Any) -> pogosim.VectorSimulation:
+    """Begin runs that this process drives."""
+    return pogosim.VectorSimulation(None, write_scene(folder, SCENE | changes), range(runs), threads=threads)
+
+
+def powers(step: int, run: int) -> np.ndarray[Any, Any]:
+    """Return powers of the robots of a run for a step."""
+    return np.random.default_rng((step, run)).integers(-1023, 1024, (ROBOTS, 3))
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_brain_of_many_runs_does_what_brains_of_each_do(threads: int, tmp_path: Path) -> None:
+    path = write_scene(tmp_path, SCENE)
+    with pogosim.VectorSimulation(None, path, range(4), threads=threads) as runs:
+        brain = runs.brain("robots")
+        assert brain is runs.brain("robots")
+        assert (brain.motors.shape, brain.leds.shape) == ((4, ROBOTS, 3), (4, ROBOTS, 5, 3))
+        seen = []
+        for step in range(50):
+            brain.motors = np.stack([powers(step, run) for run in range(4)])
+            brain.leds[..., 0, 0] = step
+            assert runs.step(2) == [2] * 4
+            seen.append(brain.acceleration.copy())
+        hashes = [sim.state_hash for sim in runs]
+    for run in range(4):
+        with pogosim.Simulation(None, path, seed=run) as sim:
+            own = sim.brain("robots")
+            for step in range(50):
+                own.motors[:] = powers(step, run)
+                own.leds[:, 0, 0] = step
+                sim.step(2)
+                assert np.array_equal(own.acceleration, seen[step][run])
+            assert sim.state_hash == hashes[run]
+
+
+def test_arrays_of_many_runs_are_those_of_each(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        runs.brain("robots").motors[:] = 500
+        runs.brain("robots").leds[:] = 7
+        runs.step(30)
+        for name in ("positions", "headings", "velocities", "leds"):
+            found, expected = getattr(runs, name), np.stack([getattr(sim, name) for sim in runs])
+            assert found.dtype == expected.dtype
+            assert np.array_equal(found, expected)
+            assert not np.shares_memory(found, getattr(runs, name))
+        assert (runs.velocities != 0).any()
+        assert (runs.leds == 7).all()
+
+
+def test_messages_go_out_once(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        brain = runs.brain("robots")
+        brain.send_bytes[:, 0, :2] = [1, 2]
+        brain.send_length[:, 0] = 2
+        runs.step(10)
+        assert (brain.send_length == -1).all()
+        assert [sim.messages_sent.tolist() for sim in runs] == [[1, 0, 0]] * 4
+        assert np.array_equal(brain.received_count, [sim.brain("robots").received_count for sim in runs])
+
+
+def test_rows_of_a_run_that_begins_again_are_those_of_the_new_one(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        brain = runs.brain("robots")
+        brain.motors[:] = 300
+        runs.step(20)
+        runs[2].reset()
+        assert np.unique(brain.motors[2]).tolist() == [0]
+        assert np.unique(brain.motors[[0, 1, 3]]).tolist() == [300]
+        assert runs.step() == [1] * 4
+        assert [sim.steps for sim in runs] == [21, 21, 1, 21]
+        runs.reset()
+        assert np.unique(brain.motors).tolist() == [0]
+        brain.motors[:] = 1  # before the first step of the new runs
+        runs.step(3)
+        assert np.unique(brain.motors).tolist() == [1]
+
+
+def test_runs_that_are_over_wait_for_the_others(tmp_path: Path) -> None:
+    with many(tmp_path, simulation_time=0.5) as runs:
+        runs[1].step(20)
+        assert runs.step(40) == [40, 30, 40, 40]
+        assert runs.step(40) == [10, 0, 10, 10]
+        assert runs.is_over.all()
+        assert runs.step(40) == [0] * 4
+        assert runs.step(0) == [0] * 4
+
+
+def test_run_in_use_elsewhere_is_refused(tmp_path: Path) -> None:
+    with many(tmp_path, simulation_time=1e6) as runs:
+        stepping = threading.Thread(target=runs[3].step, args=(50_000,))
+        stepping.start()
+        refused = 0
+        while stepping.is_alive() and not refused:
+            try:
+                runs.step()
+            except pogosim.SimulationError as error:
+                assert "in use by another thread" in str(error)
+                refused += 1
+        stepping.join()
+        assert refused
+        assert runs.step() == [1] * 4  # no lock is left
+
+
+def test_what_does_not_fit_is_one_line(tmp_path: Path) -> None:
+    path = write_scene(tmp_path, SCENE)
+    with many(tmp_path) as runs:
+        with pytest.raises(pogosim.ConfigurationError, match="there is no category 'robot'"):
+            runs.brain("robot")
+        brain = runs.brain("robots")
+        with pytest.raises(ValueError, match="could not broadcast"):
+            brain.motors = np.zeros((4, 2, 3))
+        with pytest.raises(pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers .* found 0\.8"):
+            brain.motors = 0.8
+        with pytest.raises(AttributeError):
+            brain.motor = 3  # type: ignore[attr-defined]
+        runs.simulations[1] = pogosim.Simulation(None, path, set={"objects.robots.nb": ROBOTS + 1})
+        with pytest.raises(pogosim.SimulationError, match=r"the same number of robots in each, found 3 and 4"):
+            _ = runs.positions
+    for use in (runs.step, lambda: runs.positions, lambda: brain.motors, lambda: runs.brain("robots")):
+        with pytest.raises(pogosim.SimulationError, match="closed"):
+            use()
+    with (
+        pogosim.VectorSimulation(
+            f"{example('hanabi')}.so", path, range(2), set={"objects.robots.brain": "program"}
+        ) as run,
+        pytest.raises(pogosim.ConfigurationError, match="is not driven by the host"),
+    ):
+        run.brain("robots")
+
+
+def test_no_runs_make_no_steps(tmp_path: Path) -> None:
+    with many(tmp_path, runs=0) as runs:
+        assert runs.step() == []
+        with pytest.raises(pogosim.SimulationError, match="no runs"):
+            _ = runs.positions
