@@ -16,6 +16,7 @@ import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, results, script, wait_until_gone
 from batches import write_options as write
 from pogosim.extras import installing
+from pogosim.utils import load_dataframe
 from running import ROOT, Run, example, run_command
 from searches import COMMAND as SEARCH
 from searches import history, search, write_search
@@ -149,6 +150,25 @@ def test_jobs_do_the_runs_and_leave_nothing_but_the_same_bytes(
     wait_until(lambda: not jobs(site))
     used = ask(site, "squeue", "--states=all", "--noheader", "--format=%C %l %P %k")
     assert set(used) == {"2 10:00 main mine"}
+
+
+def test_array_of_jobs_does_a_batch_in_parts(
+    site: dict[str, str], undisturbed: dict[str, bytes], tmp_path: Path
+) -> None:
+    write(tmp_path)
+    part = "--part $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT -t jobs/$SLURM_ARRAY_TASK_ID"
+    command = f"{' '.join(COMMAND)} run -c many.yaml -S {example('helloworld')} --seeds 0:2 --retry-same-seed {part}"
+    said = ask(site, "sbatch", "--wait", "--array=0-2", "--mem=200M", f"--chdir={tmp_path}", "--wrap", command)
+    assert "Submitted batch job" in said[0]
+    merging = [*COMMAND, "merge", "jobs", "-o", "results", "-c", "many.yaml"]
+    merged = subprocess.run(merging, cwd=tmp_path, env=site, capture_output=True, text=True, check=False, timeout=60)
+    assert (merged.returncode, merged.stderr) == (0, "")
+    rows, _ = load_dataframe(tmp_path / "results" / "result.feather")
+    expected = tmp_path / "undisturbed.feather"
+    expected.write_bytes(undisturbed["result.feather"])
+    pd.testing.assert_frame_equal(
+        rows.drop(columns=["seed", "retry_attempt"]), load_dataframe(expected)[0], check_like=True
+    )
 
 
 def test_search_keeps_its_jobs_from_generation_to_generation(site: dict[str, str], tmp_path: Path) -> None:

@@ -130,6 +130,51 @@ def test_plan_says_what_run_does_and_does_nothing(tmp_path: Path) -> None:
     assert (done["operation"], done["ok"], done["manifest"]) == ("run", True, "results/pogobatch_run.json")
 
 
+def test_parts_together_are_the_whole(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    seeds = ("--seeds", "3:6")
+    assert subcommand(tmp_path, "run", *seeds).code == 0
+    counts = []
+    for part in range(3):
+        done = report(subcommand(tmp_path, "run", *seeds, "-t", f"jobs/{part}", "--part", f"{part}/3", "--json"))
+        assert (done["part"], done["parts"]) == (part, 3)
+        counts.append(done["task_count"])
+    assert counts == [3, 3, 2]
+    assert run_main(tmp_path, ["merge", "jobs", "-o", "merged", "-c", "many.yaml"]).code == 0
+    assert (tmp_path / "merged" / "result.feather").read_bytes() == results(tmp_path)["result.feather"]
+    again = subcommand(tmp_path, "run", *seeds, "-t", "jobs/1", "--part", "1/3")
+    assert again.output.splitlines()[0].startswith("3 of 3 runs are done already, in ")
+    shown = plan(tmp_path, *seeds, "--part", "2/3", "--show-tasks")
+    assert [line for line in shown.output.splitlines() if line.startswith(("Part", "run"))] == [
+        "Part 2 of 3: 2 runs",
+        "run 2 of result.feather, seed 5, objects.robots.nb: 2",
+        "run 1 of result.feather, seed 4, objects.robots.nb: 3",
+    ]
+
+
+def test_part_without_runs_is_done(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    result = subcommand(tmp_path, "run", "--seeds", "3:3", "-t", "jobs/9", "--part", "9/10")
+    assert result.code == 0
+    assert "Part 9 of 10: 0 runs done" in result.output
+
+
+@pytest.mark.parametrize("text", ["", "1", "3/3", "-1/3", "1/0", "a/b", "1/3/4", "1.0/3", "/3"])
+def test_part_that_is_none_is_one_line(text: str, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    result = subcommand(tmp_path, "run", f"--part={text}")
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert result.errors.endswith(f"expected N/M with N from 0 to M - 1, such as 0/40 to 39/40; found '{text}'\n")
+
+
+def test_part_with_failed_runs_says_so(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    program = script(tmp_path / "fails", 'case $seed in 1[0-9]*) exit 4 ;; esac; [ "$seed" = 4 ] && exit 4')
+    result = subcommand(tmp_path, "run", "--seeds", "3:6", "-R", "0", "--part", "1/2", program=program)
+    assert result.code == 3
+    assert result.errors.endswith("2 run(s) failed; the same command does them again, and only them\n")
+
+
 def test_json_is_whole_however_many_runs_there_are_and_whatever_their_names(tmp_path: Path) -> None:
     columns = ["label"]
     write_options(
@@ -360,7 +405,7 @@ def test_run_has_every_option_of_the_flags() -> None:
     flags = {flag for action in parser("pogobatch")._actions for flag in action.option_strings}
     own = {flag for action in subparser("run", "pogobatch")._actions for flag in action.option_strings}
     assert flags - own == {"--list-outputs", "-V", "--version"}
-    assert own - flags == {"--jobs"}
+    assert own - flags == {"--jobs", "--part"}
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import logging
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -265,23 +265,62 @@ class PogobotBatchRunner:
             self.do_all(queue)
         return outputs
 
+    def run_part(self, number: int, parts: int) -> int:
+        """Do one part of all runs, for one of several jobs, and join nothing: `pogobatch merge` does.
+
+        The part has the runs `number`, `number` + `parts`, ... in the order of the combinations and their runs. With
+        `keep_temp`, the folders of these runs stay, which are what is merged.
+
+        Args:
+            number: Which part, from 0 on.
+            parts: How many there are.
+
+        Returns:
+            How many runs it has. Those that failed are listed in `failures`.
+        """
+        selected = self.checked_selection()
+        self.combination_count = len(selected)
+        with self.prepared():
+            combinations = [self.combination_of(self.write_temp_yaml(entries), output) for entries, output in selected]
+            all_tasks = [task for combination in combinations for task in combination.tasks]
+            own = {task.key for task in all_tasks[number::parts]}
+            for combination in combinations:
+                combination.tasks = [task for task in combination.tasks if task.key in own]
+            self.do_runs(self.execution_of(combinations), ())
+        return len(own)
+
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""
-        shows_warnings = self.simulator_output != "quiet"
-        execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
-        self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
+        execution = self.execution_of(combinations)
         by_output: dict[str, list[Combination]] = {}
         for combination in combinations:
             by_output.setdefault(combination.output, []).append(combination)
+        self.do_runs(execution, by_output)
+        for output, of_output in by_output.items():
+            if join(of_output, execution.finished, self.configuration.text, self.layout):
+                self.generated.append(output)
+        if not self.failures:
+            self.temporary.forget_finished_runs()
+            self.temporary.remove_leftovers()  # of workers that were killed
+
+    def execution_of(self, combinations: Sequence[Combination]) -> Execution:
+        """Return the runs of combinations, of which none has ended yet."""
+        shows_warnings = self.simulator_output != "quiet"
+        execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
+        self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
+        return execution
+
+    def do_runs(self, execution: Execution, outputs: Collection[str]) -> None:
+        """Do the runs that are not done yet; the first of them removes results of an earlier batch."""
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
         with self.workers.opened() as do:
             outcomes = do(waiting)
             if not done:
-                outcomes = removing_stale(by_output, outcomes)
+                outcomes = removing_stale(outputs, outcomes)
             else:
-                for output in by_output:
+                for output in outputs:
                     remove_stale(output)
             try:
                 execution.take(outcomes, len(waiting), self.progress)
@@ -290,14 +329,8 @@ class PogobotBatchRunner:
         self.replaced = execution.replaced
         report_replaced(self.replaced, len(execution.tasks), RETRY if RETRY in self.layout.run_columns else None)
         report_failures(self.failures)
-        for output, of_output in by_output.items():
-            if join(of_output, execution.finished, self.configuration.text, self.layout):
-                self.generated.append(output)
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
-        else:
-            self.temporary.forget_finished_runs()
-            self.temporary.remove_leftovers()  # of workers that were killed
 
     # ---- Its parts ----
 

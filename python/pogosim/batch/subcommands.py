@@ -52,6 +52,10 @@ def plan(arguments: argparse.Namespace) -> Report:
     outputs = list(dict.fromkeys(str(task["output"]) for task in tasks))
     combinations = len(tasks) // runner.runs
     tell(f"{counted(combinations, 'combination')} x {counted(runner.runs, 'seed')}: {counted(len(tasks), 'run')}")
+    if arguments.part is not None:
+        number, parts = part_of(arguments.part)
+        tasks = tasks[number::parts]
+        tell(f"Part {number} of {parts}: {counted(len(tasks), 'run')}")
     for output in outputs:
         tell(f" - {output}")
     for task in tasks if arguments.show_tasks else ():
@@ -145,10 +149,47 @@ def add_campaign_options(options: Parser, needs_program: bool = True) -> None:
     )
     add_choice_options(options)
     add_run_options(options)
+    add(
+        "--part",
+        metavar="N/M",
+        help="do every M-th run only, from number N = 0, ..., M - 1 on, for an array of jobs; their folders stay in "
+        "--temp-base, for pogobatch merge",
+    )
+
+
+def part_of(text: str) -> tuple[int, int]:
+    """Return the number of a part, and how many there are.
+
+    Raises:
+        BatchError: The text does not say it.
+    """
+    number, _, parts = text.partition("/")
+    if not (number.isdecimal() and parts.isdecimal() and int(number) < int(parts)):
+        raise BatchError(f"--part: expected N/M with N from 0 to M - 1, such as 0/40 to 39/40; found '{text}'")
+    return int(number), int(parts)
+
+
+def run_part(arguments: argparse.Namespace) -> Report:
+    """Do a part of a batch."""
+    number, parts = part_of(arguments.part)
+    arguments.keep_temp = True
+    runner = runner_of(arguments, is_campaign=True)
+    count = runner.run_part(number, parts)
+    report = {"config": arguments.config, "part": number, "parts": parts, "task_count": count}
+    if runner.failures:
+        message = f"{len(runner.failures)} of {counted(count, 'run')} failed; the same call does only them"
+        raise RunsFailedError(message, report)
+    tell(
+        f"Part {number} of {parts}: {counted(count, 'run')} done, in {runner.temporary.path}. When all parts are: "
+        "pogobatch merge FOLDERS -o RESULTS -c CONFIG"
+    )
+    return report
 
 
 def run(arguments: argparse.Namespace) -> Report:
     """Do a batch whose results say the seeds, and which writes a manifest."""
+    if arguments.part is not None:
+        return run_part(arguments)
     runner = runner_of(arguments, is_campaign=True)
     from pogosim.batch.campaign import LocalCampaignError, entries_of, run_campaign
 
