@@ -42,8 +42,13 @@ void catch_signal(int signal, int flags, SignalHandler handler) {
 }
 
 void give_back_signal(int signal) {
-    if (is_still_ours(signal)) {
-        sigaction(signal, &caught(signal).before, nullptr);
+    if (caught(signal).handler == nullptr) {
+        return;
+    }
+    struct sigaction now = {};
+    sigaction(signal, &caught(signal).before, &now);
+    if (now.sa_sigaction != caught(signal).handler) {
+        sigaction(signal, &now, nullptr);  // the program has taken it
     }
     caught(signal).handler = nullptr;
 }

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
+#include <csignal>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -41,7 +45,7 @@ std::string scene(int robots) {
            std::to_string(robots) + ", msg_success_rate: {type: static, rate: 0.7}}}\n";
 }
 
-Result result_of(Talk const& talk) {
+int open_run(Talk const& talk, pogosim_run** run) {
     std::vector<std::string> settings;
     if (!talk.failure.empty()) {
         settings = {"parameters.fail_at_tick=20", "parameters.failure=" + talk.failure, "user_code_timeout=0.2"};
@@ -56,9 +60,13 @@ Result result_of(Talk const& talk) {
                                       .setting_count = texts.size(),
                                       .seed = talk.seed,
                                       .strict = 0};
+    return pogosim_run_open(&options, run);
+}
+
+Result result_of(Talk const& talk) {
     Result result;
     pogosim_run* run = nullptr;
-    result.status = pogosim_run_open(&options, &run);
+    result.status = open_run(talk, &run);
     while (result.status == POGOSIM_OK && result.steps < kSteps) {
         std::int64_t done = 0;
         result.status = pogosim_run_step(run, 1 + result.steps % 7, 10.0, &done);
@@ -82,7 +90,140 @@ std::vector<Result> on_threads(std::vector<Talk> const& talks) {
     return results;
 }
 
+/// Runs that are closed at the end.
+class OpenRuns {
+public:
+    explicit OpenRuns(std::vector<Talk> const& talks) : all_(talks.size(), nullptr) {
+        for (std::size_t i = 0; i < talks.size(); ++i) {
+            EXPECT_EQ(open_run(talks[i], &all_[i]), POGOSIM_OK) << pogosim_host_error();
+        }
+    }
+    ~OpenRuns() {
+        for (pogosim_run* const run : all_) {
+            pogosim_run_close(run);
+        }
+    }
+    OpenRuns(OpenRuns const&) = delete;
+    OpenRuns& operator=(OpenRuns const&) = delete;
+
+    pogosim_run* const* data() const { return all_.data(); }
+    std::size_t size() const { return all_.size(); }
+    pogosim_run* operator[](std::size_t i) const { return all_[i]; }
+
+private:
+    std::vector<pogosim_run*> all_;
+};
+
+/// Lets all runs make so many steps. Returns what each has done.
+std::vector<pogosim_turn> stepped(OpenRuns const& runs, pogosim_threads* threads, std::int64_t steps) {
+    std::vector<pogosim_turn> turns(runs.size(), {.left = steps, .status = POGOSIM_OK, .has_messages = 0});
+    pogosim_threads_step(threads, runs.data(), turns.data(), turns.size(), 100.0);
+    return turns;
+}
+
 }  // namespace
+
+TEST(ManyRuns, OnThreadsOfTheLibraryGiveWhatEachGivesAlone) {
+    std::string const few = written("host_few.yaml", scene(10));
+    std::vector<Talk> talks;
+    for (std::int64_t seed = 1; seed <= 7; ++seed) {
+        talks.push_back({seed % 2 == 0 ? POGOSIM_HANABI : POGOSIM_HOSTED, few, "", seed});
+    }
+    for (int const count : {1, 2, 5, 20}) {
+        OpenRuns const runs(talks);
+        pogosim_threads* threads = nullptr;
+        ASSERT_EQ(pogosim_threads_open(count, &threads), POGOSIM_OK);
+        for (std::int64_t steps = 0, each = 0; steps < kSteps; steps += each) {
+            each = 1 + steps % 7;  // as result_of()
+            for (pogosim_turn const& turn : stepped(runs, threads, each)) {
+                EXPECT_EQ(turn.left, 0);
+                EXPECT_EQ(turn.status, POGOSIM_OK);
+            }
+        }
+        pogosim_threads_close(threads);
+        for (std::size_t i = 0; i < talks.size(); ++i) {
+            EXPECT_EQ(pogosim_run_hash(runs[i]), result_of(talks[i]).hash) << i << " of " << count;
+        }
+    }
+}
+
+TEST(ManyRuns, FailuresEndTheirRunsAlone) {
+    std::string const few = written("host_few.yaml", scene(10));
+    std::vector<Talk> const talks{{POGOSIM_HOSTED, few, "", 2},
+                                  {POGOSIM_HOSTED, few, "crash", 1},
+                                  {POGOSIM_HOSTED, few, "loop", 3},
+                                  {POGOSIM_HOSTED, few, "", 5},
+                                  {POGOSIM_HOSTED, few, "exit", 4}};
+    for (int const count : {1, 3}) {
+        OpenRuns const runs(talks);
+        pogosim_threads* threads = nullptr;
+        ASSERT_EQ(pogosim_threads_open(count, &threads), POGOSIM_OK);
+        std::vector<pogosim_turn> const turns = stepped(runs, threads, kSteps);
+        EXPECT_NE(std::string(pogosim_host_error()).find("robot #1"), std::string::npos) << pogosim_host_error();
+        EXPECT_NE(std::string(pogosim_threads_error(threads, 2)).find("did not return"), std::string::npos);
+        EXPECT_STREQ(pogosim_threads_error(threads, 0), "");
+        EXPECT_STREQ(pogosim_threads_error(threads, 99), "");
+        EXPECT_EQ(turns[0].status, POGOSIM_OK);
+        EXPECT_EQ(turns[1].status, POGOSIM_PROGRAM_FAILED);
+        EXPECT_EQ(turns[2].status, POGOSIM_PROGRAM_FAILED);
+        EXPECT_EQ(turns[3].left, 0);
+        EXPECT_EQ(stepped(runs, threads, 1)[1].status, POGOSIM_USAGE);  // it has failed before
+        EXPECT_STREQ(pogosim_threads_error(threads, 1), "the run has failed: reset it");
+        pogosim_threads_close(threads);
+    }
+}
+
+TEST(ManyRuns, LeaveSignalsToTheProcess) {
+    auto const other = [](int /*signal*/) {};
+    for (int const signal : {SIGSEGV, SIGPROF, SIGALRM}) {
+        std::signal(signal, other);
+    }
+    OpenRuns const runs({{POGOSIM_HANABI, written("host_few.yaml", scene(10)), "", 1}});
+    pogosim_threads* threads = nullptr;
+    ASSERT_EQ(pogosim_threads_open(2, &threads), POGOSIM_OK);
+    stepped(runs, threads, 20);
+    for (int const signal : {SIGSEGV, SIGPROF, SIGALRM}) {
+        struct sigaction now = {};
+        sigaction(signal, nullptr, &now);
+        EXPECT_EQ(now.sa_handler, static_cast<void (*)(int)>(other));
+        std::signal(signal, SIG_DFL);
+    }
+    pogosim_threads_close(threads);
+}
+
+TEST(ManyRuns, GiveTheirArraysOneAfterTheOther) {
+    OpenRuns const runs({{POGOSIM_HANABI, written("host_few.yaml", scene(10)), "", 1},
+                         {POGOSIM_HANABI, written("host_few.yaml", scene(10)), "", 2},
+                         {POGOSIM_HANABI, written("host_many.yaml", scene(40)), "", 3}});
+    std::array<std::array<float, 20>, 2> places{};
+    ASSERT_EQ(pogosim_runs_read(runs.data(), 2, nullptr, "bodies.position", places.data(), sizeof(places[0])),
+              POGOSIM_OK);
+    for (std::size_t i = 0; i < 2; ++i) {
+        pogosim_array own = {};
+        ASSERT_EQ(pogosim_run_array(runs[i], "bodies.position", &own), POGOSIM_OK);
+        EXPECT_EQ(std::memcmp(own.data, places.at(i).data(), sizeof(places[0])), 0);
+    }
+    std::array<std::byte, 3 * sizeof(places[0])> room{};
+    auto const read = [&](char const* category, char const* name) {
+        return pogosim_runs_read(runs.data(), 3, category, name, room.data(), sizeof(places[0]));
+    };
+    EXPECT_EQ(read(nullptr, "bodies.position"), POGOSIM_USAGE);
+    EXPECT_STREQ(pogosim_host_error(), "run 2: the array has 40 rows of 8 bytes, and there is room for 80 bytes");
+    EXPECT_EQ(read(nullptr, "bodies.colour"), POGOSIM_USAGE);
+    EXPECT_STREQ(pogosim_host_error(), "a run has no array 'bodies.colour'");
+    EXPECT_EQ(read("robots", "motors"), POGOSIM_USAGE);
+    EXPECT_EQ(pogosim_runs_write(runs.data(), 3, "robots", "photosensors", room.data(), 8), POGOSIM_USAGE);
+    EXPECT_STREQ(pogosim_host_error(), "the array 'photosensors' cannot be written");
+}
+
+TEST(ManyRuns, NeedASensibleNumberOfThreads) {
+    for (int const count : {-1, 0, 1025}) {
+        pogosim_threads* threads = nullptr;
+        EXPECT_EQ(pogosim_threads_open(count, &threads), POGOSIM_USAGE);
+        EXPECT_EQ(threads, nullptr);
+    }
+    pogosim_threads_close(nullptr);
+}
 
 TEST(HostedRuns, OnThreadsGiveWhatEachGivesAlone) {
     std::string const few = written("host_few.yaml", scene(10));

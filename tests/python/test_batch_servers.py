@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from batches import batch, results, write_options
+from pogosim.batch import run_server
 from pogosim.batch.run import RunSettings
 from pogosim.batch.run_server import RunServer, RunServers, ServerLostError
+from pogosim.batch.simulators import Simulators
 from pogosim.batch.temporary import TemporaryFolder
 from running import Run, compile_text, example, write_scene
 
@@ -170,6 +173,32 @@ def test_warnings_of_runs_are_the_same(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["hanabi", "run_and_tumble", "vicsek", "push_sum", "ssr", "walls", "question"])
 def test_examples_do_the_same(name: str, tmp_path: Path) -> None:
     check_same(tmp_path, *both_ways(tmp_path, example(name)))
+
+
+def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[RunServer] = []
+    begin = RunServer.__init__
+
+    def counted(self: RunServer, *arguments: Any) -> None:
+        made.append(self)
+        begin(self, *arguments)
+
+    monkeypatch.setattr(RunServer, "__init__", counted)
+    monkeypatch.setattr(Simulators, "run", None)  # what makes a process for a run
+    write_options(tmp_path, {"simulation_time": 0.1})
+    assert batch(tmp_path, "-r", "30", "-j", "2").code == 0
+    assert len(made) == 2
+    assert sum(server.runs for server in made) == 60
+
+
+def test_server_is_replaced_before_what_runs_leave_adds_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_server, "MOST_RUNS", 4)
+    write_options(tmp_path / "few", {"simulation_time": 0.1})
+    assert batch(tmp_path / "few", "-r", "9", "-j", "1").code == 0
+    monkeypatch.undo()
+    write_options(tmp_path / "many", {"simulation_time": 0.1})
+    assert batch(tmp_path / "many", "-r", "9", "-j", "1").code == 0
+    assert results(tmp_path / "few") == results(tmp_path / "many")
 
 
 # ---- One server ----

@@ -49,8 +49,10 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
 @pytest.mark.parametrize(
     ("script", "arguments"),
     [
-        ("batch_overhead", ["--runs", "0"]),
-        ("batch_overhead", ["--workers", "x"]),
+        ("batch_runs", ["--runs", "0"]),
+        ("batch_runs", ["--workers", "x"]),
+        ("batch_runs", ["--seconds", "-1"]),
+        ("batch_runs", ["-o", __file__]),
         ("compare_engines", ["--robots", "-1"]),
         ("compare_engines", ["--time-step", "nan"]),
         ("compare_engines", ["no_such_arena"]),
@@ -58,7 +60,6 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
         ("own_variables", ["many"]),
         ("reception_profile", ["--seeds", "0"]),
         ("reception_profile", ["--time", "inf"]),
-        ("runs_in_one_process", ["0"]),
         ("table", ["--robots", "0"]),
         ("table", ["-o", __file__]),
         ("environments", ["5"]),
