@@ -12,6 +12,7 @@
 
 #include "base/log.hpp"
 #include "config/scenario.hpp"
+#include "lamps/lamp_types.hpp"
 #include "sim/simulation.hpp"
 
 namespace {
@@ -41,7 +42,8 @@ Scenario scenario_of(std::string const& robots, std::string const& formation) {
                                         "arena_file=" + source + "/arenas/square.csv", "initial_formation=" + formation,
                                         "chessboard_distance_between_neighbors=90", "enable_data_logging=false",
                                         "enable_console_logging=false", "save_video_period=-1", "seed=1"},
-                          .strict = false});
+                          .strict = false},
+                         object_types());
 }
 
 bool measure(std::string const& robots, std::string const& formation) {

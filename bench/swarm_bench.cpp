@@ -23,6 +23,7 @@
 
 #include "base/log.hpp"
 #include "config/scenario.hpp"
+#include "lamps/lamp_types.hpp"
 #include "sim/simulation.hpp"
 
 namespace {
@@ -76,7 +77,8 @@ Scenario scenario_of(int robots, std::vector<std::string> const& overrides) {
         all.push_back("initial_formation=power_lloyd");
     }
     all.insert(all.end(), overrides.begin(), overrides.end());
-    return load_scenario(fmt::format("{}/conf/{}.yaml", source, kConfiguration), {.overrides = all, .strict = true});
+    return load_scenario(fmt::format("{}/conf/{}.yaml", source, kConfiguration), {.overrides = all, .strict = true},
+                         object_types());
 }
 
 void step_or_die(Simulation& simulation) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "lamps/lamp_types.hpp"
 #include "pogosim/version.h"
 
 namespace {
@@ -52,7 +53,7 @@ int main() {
         "[configuration.md](configuration.md). Numbers may be written as `1.0e6`. Keys with an empty default are\n"
         "optional and unset.\n",
         POGOSIM_VERSION_STRING);
-    for (KeyGroup const& group : configuration_reference()) {
+    for (KeyGroup const& group : configuration_reference(object_types())) {
         print(group);
     }
 }

@@ -29,6 +29,7 @@
 #include "base/memory.hpp"
 #include "base/problems.hpp"
 #include "config/scenario.hpp"
+#include "lamps/lamp_types.hpp"
 #include "pogosim/program.h"
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
@@ -82,7 +83,7 @@ LoadOptions load_options(CommandLine const& options) {
 }
 
 Scenario scenario_of(CommandLine const& options) {
-    return load_scenario(options.config, load_options(options));
+    return load_scenario(options.config, load_options(options), object_types());
 }
 
 Conversions conversions(CommandLine const& options) {
@@ -185,7 +186,7 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
     check_options.run.film = options.video;
     check_options.picture = options.picture;
     Problems problems;
-    Scenario scenario = read_scenario(options.config, load_options(options), problems);
+    Scenario scenario = read_scenario(options.config, load_options(options), object_types(), problems);
     if (options.seed) {
         scenario.seed = options.seed;
     }

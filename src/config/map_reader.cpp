@@ -179,7 +179,7 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
         hint = inner_place(map_, key, value);
     }
     if (hint.empty()) {
-        hint = other_level(path_, key, map_);
+        hint = other_level(path_, key, map_, reading_.types);
     }
     if (hint.empty()) {
         hint = inner_level(path_, key, names);

@@ -39,31 +39,28 @@ Names const& names_at_the_top() {
     return names;
 }
 
-/// By type.
-std::map<std::string, Names, std::less<>> const& names_of_objects() {
-    static std::map<std::string, Names, std::less<>> const names = [] {
-        std::map<std::string, Names, std::less<>> found;
-        for (ObjectType const& type : object_types()) {
-            Node const nothing;
-            Reading reading;
-            MapReader reader(nothing, "objects", reading);
-            ObjectConfig object;
-            reader.collect([&] { type.read(reader, object); });
-            found.emplace(type.name, names_of(reader));
-        }
-        return found;
-    }();
-    return names;
+using NamesByType = std::map<std::string, Names, std::less<>>;
+
+NamesByType names_of_objects(ObjectTypes const& types) {
+    NamesByType found;
+    for (ObjectType const& type : types) {
+        Node const nothing;
+        Reading reading;
+        MapReader reader(nothing, "objects", reading);
+        ObjectConfig object;
+        reader.collect([&] { type.read(reader, object); });
+        found.emplace(type.name, names_of(reader));
+    }
+    return found;
 }
 
 /// The first category whose type has the key.
-std::string category_with(std::string_view key, Node const& root) {
+std::string category_with(std::string_view key, Node const& root, NamesByType const& names_of_types) {
     Node const* const objects = root.find("objects");
     for (auto const& [category, entry] : objects == nullptr ? std::vector<Node::Entry>() : objects->entries) {
         Node const* const type = entry.kind == Node::Kind::map ? entry.find("type") : nullptr;
-        auto const names =
-            type == nullptr ? names_of_objects().end() : names_of_objects().find(lower_case(type->scalar));
-        if (names != names_of_objects().end() && names->second.contains(key)) {
+        auto const names = type == nullptr ? names_of_types.end() : names_of_types.find(lower_case(type->scalar));
+        if (names != names_of_types.end() && names->second.contains(key)) {
             return category;
         }
     }
@@ -89,7 +86,8 @@ bool is_in(std::string_view path, std::string_view map) {
 }  // namespace
 
 std::string inner_level(std::string_view path, std::string_view key, std::span<std::string const> names) {
-    static std::vector<KeyGroup> const groups = configuration_reference();
+    // Groups of types are not looked at here.
+    static std::vector<KeyGroup> const groups = configuration_reference(ObjectTypes({}));
     std::string_view const category = category_part(path);
     std::string const map =
         category.empty() ? std::string(path) : fmt::format("{}{}", kOfCategory, path.substr(category.size()));
@@ -115,15 +113,16 @@ std::string inner_level(std::string_view path, std::string_view key, std::span<s
     return places.size() == 1 ? fmt::format("; did you mean '{}'?", shown(places.front())) : "";
 }
 
-std::string other_level(std::string_view path, std::string_view key, Node const& map) {
+std::string other_level(std::string_view path, std::string_view key, Node const& map, ObjectTypes const* types) {
     if (!path.empty()) {
         return names_at_the_top().contains(key) ? "; it belongs at the top level" : "";
     }
-    bool const is_of_objects = std::ranges::any_of(
-        names_of_objects(), [&](auto const& type_and_names) { return type_and_names.second.contains(key); });
-    return is_of_objects
-               ? fmt::format("; it belongs in a category, as objects.{}.{}", shown(category_with(key, map)), shown(key))
-               : "";
+    NamesByType const names = types == nullptr ? NamesByType() : names_of_objects(*types);
+    bool const is_of_objects =
+        std::ranges::any_of(names, [&](auto const& type_and_names) { return type_and_names.second.contains(key); });
+    return is_of_objects ? fmt::format("; it belongs in a category, as objects.{}.{}",
+                                       shown(category_with(key, map, names)), shown(key))
+                         : "";
 }
 
 namespace {

@@ -11,9 +11,12 @@
 
 namespace pogosim {
 
+class ObjectTypes;
+
 /// "; it belongs at the top level" or "; it belongs in a category, as objects.robots.battery", for a key that is
 /// unknown in the map at `path`; empty if no other level has it. At the top level, `map` is the whole configuration.
-std::string other_level(std::string_view path, std::string_view key, Node const& map);
+/// `types`: those that objects may have; null: none.
+std::string other_level(std::string_view path, std::string_view key, Node const& map, ObjectTypes const* types);
 
 /// "; did you mean 'magnetometer.csv.file'?", for a key that is unknown in the map at `path`, and stands in one other
 /// place only of a map such as `magnetometer` or `battery`; empty otherwise. At the top level and in a category, for

@@ -9,6 +9,8 @@
 
 namespace pogosim {
 
+class ObjectTypes;
+
 /// A file that a category names.
 struct ObjectFile {
     std::filesystem::path path;  // as it was opened
@@ -23,6 +25,7 @@ struct Reading {
     std::filesystem::path configuration{};   // the file; others that it names are searched beside it, too
     std::string firmware{};                  // that drives robots in the place of the program; empty: none does
     std::vector<ObjectFile> object_files{};  // that have been read
+    ObjectTypes const* types = nullptr;      // that objects may have; null where no entries of `objects` are read
 };
 
 }  // namespace pogosim

@@ -11,7 +11,7 @@
 
 namespace pogosim {
 
-std::vector<KeyGroup> configuration_reference() {
+std::vector<KeyGroup> configuration_reference(ObjectTypes const& types) {
     Node const nothing;
     Reading reading;
     std::vector<KeyGroup> groups;
@@ -21,10 +21,10 @@ std::vector<KeyGroup> configuration_reference() {
     read_top_level(top, scenario);
     groups.push_back({"", "", "Top level.", top.known_keys()});
 
-    for (ObjectType const& type : object_types()) {
+    for (ObjectType const& type : types) {
         MapReader reader(nothing, "objects.<category>", reading);
         ObjectConfig object;
-        reader.read(object_keys(), object);
+        reader.read(types.common_keys(), object);
         type.read(reader, object);
         groups.push_back({"objects.<category>", std::string(type.name), std::string(type.doc), reader.known_keys()});
     }

@@ -9,6 +9,8 @@
 
 namespace pogosim {
 
+class ObjectTypes;
+
 struct KeyGroup {
     std::string path;  // of the map that holds the keys: "", "objects.<category>", ...
     std::string type;  // of objects: the value of `type`; else empty
@@ -16,6 +18,6 @@ struct KeyGroup {
     std::vector<KeyDescription> keys;
 };
 
-std::vector<KeyGroup> configuration_reference();
+std::vector<KeyGroup> configuration_reference(ObjectTypes const& types);
 
 }  // namespace pogosim

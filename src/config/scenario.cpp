@@ -58,9 +58,10 @@ Node without_maps_of_tools(Node root) {
 }
 
 /// Neither a key of the top level, nor an entry without a type, which a `--set` with a slip in its name makes.
-void require_category(Node const& objects, std::string const& category, Node const& node) {
+void require_category(Node const& objects, std::string const& category, Node const& node, ObjectTypes const& types) {
     bool const has_no_type = node.kind != Node::Kind::sequence && node.find("type") == nullptr;
-    if (std::string const place = has_no_type ? other_level("objects", category, objects) : ""; !place.empty()) {
+    if (std::string const place = has_no_type ? other_level("objects", category, objects, &types) : "";
+        !place.empty()) {
         fail_at({node, "objects." + category}, fmt::format("this is no category of objects{}", place));
     }
     bool const is_new = node.source == kSetSource && node.kind == Node::Kind::map && node.find("type") == nullptr;
@@ -96,8 +97,9 @@ Node read_objects(Node const* objects, Reading& reading, std::vector<ObjectConfi
         return entry;
     };
     for (auto const& [category, node] : objects->entries) {
-        if (!reading.problems.collect(
-                [&, &category = category, &node = node] { require_category(*objects, category, node); })) {
+        if (!reading.problems.collect([&, &category = category, &node = node] {
+                require_category(*objects, category, node, *reading.types);
+            })) {
             continue;
         }
         std::string const path = "objects." + category;
@@ -146,7 +148,8 @@ Node const* node_of(Scenario const& scenario, ObjectConfig const& object) {
     return entry != nullptr && object.item ? &entry->items[*object.item] : entry;
 }
 
-Scenario read_scenario(std::string const& path, LoadOptions const& options, Problems& problems) {
+Scenario read_scenario(std::string const& path, LoadOptions const& options, ObjectTypes const& types,
+                       Problems& problems) {
     Scenario scenario;
     scenario.file = path;
     Node const written = read_yaml_file(path);
@@ -154,6 +157,7 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
         .strict_keys = options.strict, .strict_values = options.strict_values, .thorough = options.thorough};
     reading.configuration = path;
     reading.firmware = options.firmware;
+    reading.types = &types;
     check_maps_of_tools(written, reading.problems);
     ConfigSource source{.tree = resolved_tree(without_maps_of_tools(written), options.overrides, reading),
                         .values = {}};
@@ -187,9 +191,9 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Prob
     return scenario;
 }
 
-Scenario load_scenario(std::string const& path, LoadOptions const& options) {
+Scenario load_scenario(std::string const& path, LoadOptions const& options, ObjectTypes const& types) {
     Problems problems;
-    Scenario scenario = read_scenario(path, options, problems);
+    Scenario scenario = read_scenario(path, options, types, problems);
     problems.throw_if_any();
     return scenario;
 }

@@ -18,6 +18,7 @@
 namespace pogosim {
 
 struct ConfigSource;
+class ObjectTypes;
 class Problems;
 
 enum class BoundaryCondition { solid, periodic };
@@ -153,11 +154,13 @@ struct LoadOptions {
 };
 
 /// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each
-/// mistake; warns once for each unknown key, naming the nearest known one.
-Scenario load_scenario(std::string const& path, LoadOptions const& options);
+/// mistake; warns once for each unknown key, naming the nearest known one. `types`: those that objects may have, see
+/// lamps/lamp_types.hpp.
+Scenario load_scenario(std::string const& path, LoadOptions const& options, ObjectTypes const& types);
 
 /// The same, but adds the mistakes to `problems`: what the scenario says is right where they are not. Throws
 /// ConfigError for a file that cannot be read as a map of keys.
-Scenario read_scenario(std::string const& path, LoadOptions const& options, Problems& problems);
+Scenario read_scenario(std::string const& path, LoadOptions const& options, ObjectTypes const& types,
+                       Problems& problems);
 
 }  // namespace pogosim

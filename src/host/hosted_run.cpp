@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "config/scenario.hpp"
 #include "firmware/firmware_program.hpp"
+#include "lamps/lamp_types.hpp"
 #include "robot/context.hpp"
 #include "sim/files_of_run.hpp"
 
@@ -36,7 +37,8 @@ Scenario scenario_of(pogosim_run_options const& options) {
     bool const is_firmware = options.program != nullptr && is_firmware_file(options.program);
     Scenario scenario = load_scenario(
         options.configuration,
-        {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""});
+        {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""},
+        object_types());
     if (options.seed >= 0) {
         scenario.seed = static_cast<std::uint32_t>(options.seed);
     }

@@ -1,5 +1,7 @@
 // The types of lamps that a configuration can name: a line for each. All else about it is in one file: its parameters,
 // its keys and its light.
+#include "lamps/lamp_types.hpp"
+
 #include <array>
 #include <span>
 
@@ -24,6 +26,11 @@ constexpr std::array kLampTypes{
 
 std::span<ObjectType const> lamp_types() {
     return kLampTypes;
+}
+
+ObjectTypes const& object_types() {
+    static ObjectTypes const types(lamp_types());
+    return types;
 }
 
 }  // namespace pogosim

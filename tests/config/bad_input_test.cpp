@@ -9,11 +9,11 @@
 
 #include "base/random.hpp"
 #include "config/map_reader.hpp"
-#include "config/object_types.hpp"
 #include "config/reference.hpp"
 #include "config/scenario.hpp"
 #include "config/source.hpp"
 #include "config_file.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -346,7 +346,7 @@ TEST(BadInput, SetIsCheckedLikeTheFile) {
 TEST(BadInput, EveryKeyOfEveryTableRefusesAMapAndNonsense) {
     Warnings const warnings;  // of keys that now stand twice
     int checked = 0;
-    for (KeyGroup const& group : configuration_reference()) {
+    for (KeyGroup const& group : configuration_reference(object_types())) {
         for (KeyDescription const& key : group.keys) {
             bool const is_text = key.expected == "a string";
             bool const is_free = key.name == "parameters" || key.name == "optimization" || key.name == "progress_bar" ||
@@ -412,7 +412,7 @@ TEST(BadInput, MutilatedConfigurationsLoadOrAreRefusedAndNothingElse) {
         }
         Folder::write("fuzz.yaml", text);
         try {
-            Scenario const scenario = load_scenario("fuzz.yaml", {});
+            Scenario const scenario = load_scenario("fuzz.yaml", {}, object_types());
             EXPECT_EQ(to_yaml(scenario.source->tree).empty(), false);
             ++loaded;
         } catch (ConfigError const& error) {

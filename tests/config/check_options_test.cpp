@@ -8,6 +8,7 @@
 #include "config/reference.hpp"
 #include "config/tree.hpp"
 #include "config/user_parameters.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -183,7 +184,7 @@ TEST(NamesOfTheUser, MayBeLikeThoseOfOptions) {
 }
 
 TEST(NamesOfTheSimulator, AreNotLikeThoseOfOptions) {
-    for (KeyGroup const& group : configuration_reference()) {
+    for (KeyGroup const& group : configuration_reference(object_types())) {
         for (KeyDescription const& key : group.keys) {
             EXPECT_EQ(misspelt_option(key.name), "") << key.name;
         }
@@ -203,7 +204,7 @@ TEST(MisspeltOption, OfAParameterIsRefusedWhereAllOfItsMapLooksLikeOptions) {
 TEST(MisspeltOption, IsToldWhereAParameterIsReadAsANumber) {
     Folder const folder;
     Folder::write("x.yaml", kRobots + "parameters:\n  speed: {defalt_option: 1}\n");
-    UserParameters parameters(load_scenario("x.yaml", {}), Conversions::lenient);
+    UserParameters parameters(load_scenario("x.yaml", {}, object_types()), Conversions::lenient);
     EXPECT_EQ(parameters.unread().all, "speed.defalt_option (x.yaml:7; did you mean 'default_option'?)");
     EXPECT_EQ(error_of([&] { static_cast<void>(parameters.number("speed", 1e9)); }),
               "x.yaml:7: parameters.speed: expected a number, found a map; did you mean 'default_option', not "

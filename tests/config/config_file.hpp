@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "config/scenario.hpp"
+#include "lamps/lamp_types.hpp"
 
 namespace pogosim::config_file {
 
@@ -74,7 +75,7 @@ private:
 inline Scenario load(std::string const& text, LoadOptions const& options = {}) {
     Folder const folder;
     Folder::write("x.yaml", text);
-    return load_scenario("x.yaml", options);
+    return load_scenario("x.yaml", options, object_types());
 }
 
 /// The message of the ConfigError that `action` throws.

@@ -7,6 +7,7 @@
 #include "config/reference.hpp"
 #include "config/source.hpp"
 #include "config_file.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -194,7 +195,7 @@ TEST(Links, FilesAreFoundBesideTheConfiguration) {
     std::filesystem::create_directory("conf");
     Folder::write("conf/pairs.csv", "a,b\n0,1\n");
     Folder::write("conf/x.yaml", entry("    between: robots\n    topology: list\n    file: pairs.csv\n"));
-    Scenario const scenario = load_scenario("conf/x.yaml", {});
+    Scenario const scenario = load_scenario("conf/x.yaml", {}, object_types());
     EXPECT_EQ(scenario.links.at(0).found_file, std::filesystem::path("conf/pairs.csv"));
     EXPECT_EQ(scenario.object_files.at(0).path, std::filesystem::path("conf/pairs.csv"));
 }
@@ -241,6 +242,7 @@ TEST(Links, ValuesInUseAreReadBackAsTheyAre) {
     Warnings const warnings;
     std::string const text = to_yaml(scenario.source->values);
     Folder::write("values.yaml", text);
-    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).source->values), text);
+    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}, object_types()).source->values),
+              text);
     EXPECT_EQ(warnings.text(), "");
 }

@@ -1,5 +1,5 @@
 // The types of objects have the parts that docs/new_object_type.md says.
-#include "config/object_types.hpp"
+#include "lamps/lamp_types.hpp"
 
 #include <gtest/gtest.h>
 

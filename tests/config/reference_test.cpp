@@ -1,4 +1,5 @@
 #include "config/reference.hpp"
+#include "lamps/lamp_types.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ KeyDescription const& key_of(std::vector<KeyGroup> const& groups, std::string co
 }  // namespace
 
 TEST(Reference, EveryKeyHasALineOfDocumentationAndStandsOnce) {
-    for (KeyGroup const& group : configuration_reference()) {
+    for (KeyGroup const& group : configuration_reference(object_types())) {
         std::set<std::string> seen;
         EXPECT_FALSE(group.doc.empty()) << group.path;
         for (KeyDescription const& key : group.keys) {
@@ -37,7 +38,7 @@ TEST(Reference, EveryKeyHasALineOfDocumentationAndStandsOnce) {
 }
 
 TEST(Reference, SaysWhatTheLoaderChecks) {
-    std::vector<KeyGroup> const groups = configuration_reference();
+    std::vector<KeyGroup> const groups = configuration_reference(object_types());
     EXPECT_EQ(key_of(groups, "", "time_step").expected, "a number above 0, at most 1 (s)");
     EXPECT_EQ(key_of(groups, "", "time_step").default_text, "0.01");
     EXPECT_EQ(key_of(groups, "", "boundary_condition").expected, "solid or periodic");

@@ -11,6 +11,7 @@
 
 #include "config/source.hpp"
 #include "config_file.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -116,7 +117,7 @@ TEST(RobotModel, FileGivesKeysThatTheCategoryDoesNotHave) {
     Folder::write("x.yaml",
                   "arena_file: arenas/disk.csv\nobjects:\n  robots: {type: pogobot, robot_model: narrow.yaml, "
                   "communication_radius: 70}\n");
-    Scenario const scenario = load_scenario("x.yaml", {});
+    Scenario const scenario = load_scenario("x.yaml", {}, object_types());
     ObjectSpec const& spec = scenario.objects.at(0).spec;
     EXPECT_EQ(spec.shape.radius_mm, 30.0F);
     EXPECT_EQ(spec.robot->ir.range_mm, 70.0F);
@@ -127,7 +128,7 @@ TEST(RobotModel, FileGivesKeysThatTheCategoryDoesNotHave) {
     // What the run keeps in its data file is complete without the model's file.
     Folder::write("resolved.yaml", to_yaml(scenario.source->values));
     std::filesystem::remove("narrow.yaml");
-    ObjectSpec const again = load_scenario("resolved.yaml", {}).objects.at(0).spec;
+    ObjectSpec const again = load_scenario("resolved.yaml", {}, object_types()).objects.at(0).spec;
     EXPECT_EQ(again.robot->model, spec.robot->model);
     EXPECT_EQ(again.shape.radius_mm, 30.0F);
 }
@@ -144,7 +145,7 @@ TEST(RobotModel, FileIsSearchedBesideTheConfigurationAndInThePathOfTheUser) {
                   "  a: {type: pogobot, robot_model: beside.yaml}\n"
                   "  b: {type: pogobot, robot_model: far.yaml}\n"
                   "  c: {type: pogobot, robot_model: models/pogobot_wheels.yaml}\n");
-    Scenario const scenario = load_scenario("conf/x.yaml", {});
+    Scenario const scenario = load_scenario("conf/x.yaml", {}, object_types());
     unsetenv("POGOSIM_PATH");
     EXPECT_EQ(scenario.objects.at(0).spec.shape.radius_mm, 31.0F);
     EXPECT_EQ(scenario.objects.at(1).spec.shape.radius_mm, 32.0F);
@@ -156,7 +157,7 @@ TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
     auto const error = [](std::string const& model) {
         Folder::write("m.yaml", model);
-        return error_of([] { load_scenario("x.yaml", {}); });
+        return error_of([] { load_scenario("x.yaml", {}, object_types()); });
     };
     EXPECT_EQ(error("radius: 30\nfaces: []\n"), "m.yaml:2: objects.robots.faces: expected 1 to 4 entries, found 0");
     EXPECT_EQ(error("faces:\n  - {angle_deg: 0}\n  - {angle_deg: 10, emission_deg: 200}\n"),
@@ -169,13 +170,13 @@ TEST(RobotModel, MistakesNameTheFileAndTheLineOfTheModel) {
               "m.yaml:1: robot_model: a robot model cannot name another one; copy the keys of that one into this file");
     EXPECT_NE(error("faces: [").find("m.yaml"), std::string::npos);
     std::filesystem::remove("m.yaml");
-    EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}); })
+    EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}, object_types()); })
                   .find("x.yaml:2: objects.robots.robot_model: there is no file "
                         "'m.yaml'; searched "),
               0U);
     Warnings const warnings;
     Folder::write("m.yaml", "radius: 30\nfacess: [{angle_deg: 0}]\n");
-    load_scenario("x.yaml", {});
+    load_scenario("x.yaml", {}, object_types());
     EXPECT_NE(warnings.text().find("m.yaml:2: "), std::string::npos);
     EXPECT_NE(warnings.text().find("'faces'"), std::string::npos);
 }
@@ -189,7 +190,7 @@ TEST(RobotModel, FileWithoutKeysIsToldWhatARobotModelHolds) {
     for (auto const& [text, what] :
          {std::pair{"", "m.yaml: the file"}, {"# later\n", "m.yaml: the file"}, {"{}\n", "m.yaml:1: the map"}}) {
         Folder::write("m.yaml", text);
-        EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}); }), what + content);
+        EXPECT_EQ(error_of([] { load_scenario("x.yaml", {}, object_types()); }), what + content);
     }
 }
 
@@ -198,9 +199,9 @@ TEST(RobotModel, FileOfWhichNothingCountsIsWarnedOf) {
     Folder::write("m.yaml", "radius: 30\ncommunication_radius: 55\n");
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml, communication_radius: 70}\n");
     Warnings const warnings;
-    load_scenario("x.yaml", {});  // gives the radius
+    load_scenario("x.yaml", {}, object_types());  // gives the radius
     EXPECT_EQ(warnings.text(), "");
-    load_scenario("x.yaml", {.overrides = {"objects.robots.radius=26.5"}});
+    load_scenario("x.yaml", {.overrides = {"objects.robots.radius=26.5"}}, object_types());
     EXPECT_EQ(warnings.text(),
               "x.yaml:2: objects.robots.robot_model: 'm.yaml' changes nothing, since the category has radius, "
               "communication_radius itself; remove there what the model is to give\n");
@@ -298,11 +299,13 @@ TEST(RobotModel, SpeedOfTheCategoryIsToldWhatItMeansWithTheMotorsOfAFile) {
     Folder const folder;
     Folder::write("m.yaml", "motors: {left: {angular_rad_s: 2}, right: {angular_rad_s: -2}}\n");
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
-    load_scenario("x.yaml", {});
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=4"}});  // the same as the motors say
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_linear_speed=40"}});  // means what it has always meant
+    load_scenario("x.yaml", {}, object_types());
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=4"}},
+                  object_types());  // the same as the motors say
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_linear_speed=40"}},
+                  object_types());  // means what it has always meant
     EXPECT_EQ(warnings.text(), "");
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=2"}});
+    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=2"}}, object_types());
     EXPECT_EQ(warnings.text(),
               "--set: objects.robots.max_angular_speed: with `motors` (m.yaml:1), this is the fastest turn, 2 rad/s; "
               "without them, it would be 8 rad/s. Remove it to turn as fast as the motors say, 4 rad/s\n");

@@ -14,6 +14,7 @@
 #include "config/tree.hpp"
 #include "config_file.hpp"
 #include "lamps/alternating_rays_lamp.hpp"
+#include "lamps/lamp_types.hpp"
 #include "lamps/rotating_ray_lamp.hpp"
 #include "lamps/spot_lamp.hpp"
 
@@ -126,7 +127,8 @@ TEST(Scenario, DefaultsOfRobotsAreThoseOfTheConfigurationSheet) {
 
 TEST(Scenario, TheArticlesExampleLoadsWithoutAWarning) {
     Warnings const warnings;
-    Scenario const s = load_scenario(POGOSIM_SOURCE_DIR "/conf/simple.yaml", {.overrides = {}, .strict = true});
+    Scenario const s =
+        load_scenario(POGOSIM_SOURCE_DIR "/conf/simple.yaml", {.overrides = {}, .strict = true}, object_types());
     EXPECT_EQ(warnings.text(), "");
     EXPECT_EQ(s.view.window_width_px, 600);
     EXPECT_EQ(s.arena_file, "arenas/disk.csv");

@@ -9,6 +9,7 @@
 #include "base/problems.hpp"
 #include "config/scenario.hpp"
 #include "config_file.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -98,7 +99,7 @@ TEST(SeveralMistakes, ScenarioIsReadBesideItsMistakes) {
     Folder const folder;
     Folder::write("x.yaml", kRobots + "    nb: many\nsimulation_time: 7\n");
     Problems problems;
-    Scenario const scenario = read_scenario("x.yaml", {}, problems);
+    Scenario const scenario = read_scenario("x.yaml", {}, object_types(), problems);
     EXPECT_EQ(problems.messages().size(), 1U);
     EXPECT_TRUE(problems.has_key("objects.robots.nb"));
     EXPECT_EQ(scenario.simulation_time_s, 7.0);

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "config/object_types.hpp"
 #include "config/source.hpp"
 #include "config_file.hpp"
+#include "lamps/lamp_types.hpp"
 
 using namespace pogosim;
 using namespace pogosim::config_file;
@@ -38,7 +38,8 @@ void expect_complete(Scenario const& scenario) {
     Folder const folder;
     std::string const text = to_yaml(scenario.source->values);
     Folder::write("values.yaml", text);
-    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}).source->values), text);
+    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}, object_types()).source->values),
+              text);
     std::vector<std::string> lines = warnings.lines();
     std::erase_if(lines, [](std::string const& line) { return line.find("walls add energy") != std::string::npos; });
     EXPECT_EQ(lines, std::vector<std::string>());
@@ -91,7 +92,7 @@ TEST(ValuesInUse, GiveTheSameValuesForEveryConfigurationOfTheProject) {
             continue;
         }
         SCOPED_TRACE(file.path());
-        expect_complete(load_scenario(file.path().string(), {.overrides = {}, .strict = false}));
+        expect_complete(load_scenario(file.path().string(), {.overrides = {}, .strict = false}, object_types()));
         ++count;
     }
     EXPECT_GT(count, 10);

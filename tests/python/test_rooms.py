@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import re
+import subprocess
+from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
+from running import build_folder
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 OF_FIRMWARE = "emu"  # compiled into programs for the emulated processor, by `make emu`; no part of the simulator
@@ -30,6 +34,32 @@ def declared_rooms() -> dict[str, set[str]]:
         listed = re.search(r"ROOMS ([\w\s]*?)(?=LIBRARIES|APART|$)", body, re.DOTALL)
         rooms[name] = set(listed.group(1).split()) if listed else set()
     return rooms
+
+
+def rooms_below(room: str) -> set[str]:
+    """All rooms that a room may look into, and those that they may look into."""
+    below: set[str] = set()
+    left = [room]
+    while left:
+        new = declared_rooms()[left.pop()] - below
+        below |= new
+        left += new
+    return below
+
+
+@cache
+def symbols(room: str) -> dict[str, set[str]]:
+    """Functions and variables of C++ with a name in the linker, by its letters for what they are: U is needed."""
+    folder = build_folder() / "src" / "CMakeFiles" / f"pogosim_{room}.dir"
+    files = sorted(folder.rglob("*.o"))
+    if not files:
+        pytest.skip("the object files of the rooms are not there")
+    found = defaultdict(set)
+    for line in subprocess.run(["nm", "-P", *files], capture_output=True, text=True, check=True).stdout.splitlines():
+        name, *kind = line.split()[:2]
+        if kind and name.lstrip("_").startswith("Z"):
+            found[kind[0]].add(name)
+    return found
 
 
 def includes(room: str, pattern: str) -> set[tuple[str, str]]:
@@ -84,3 +114,17 @@ def test_every_source_is_a_part_of_its_room() -> None:
     assert len(sources) > 100
     missing = [str(file) for file in sources if not re.search(rf"\b{re.escape(file.name)}\b", text)]
     assert missing == []
+
+
+def test_no_room_needs_what_a_room_above_it_defines() -> None:
+    """A declaration of another room's function would hide an arrow. Functions of C are those of include/, for all."""
+    needed = {room: symbols(room)["U"] for room in declared_rooms()}
+    home = {name: room for room in declared_rooms() for kind in "TDBRS" for name in symbols(room)[kind]}
+    assert len(home) > 1000
+    wrong = [
+        f"{room} needs {name} of {home[name]}"
+        for room, names in needed.items()
+        for name in names
+        if name in home and home[name] not in rooms_below(room) | {room}
+    ]
+    assert wrong == []

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/config_file.hpp"
+#include "lamps/lamp_types.hpp"
 #include "sim/build_world.hpp"
 #include "sim/simulation.hpp"
 #include "support/test_program.hpp"
@@ -36,7 +37,7 @@ std::string error_with(std::string const& objects, std::string const& root = "",
     std::string text = kScene;
     text.replace(text.find("ROOT"), 4, root.empty() ? "" : "initial_formation_root_object: " + root);
     Folder::write("x.yaml", text + objects);
-    return error_of([] { build_world(load_scenario("x.yaml", {}), 1); });
+    return error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); });
 }
 
 struct Case {
@@ -109,7 +110,7 @@ TEST(BadObjects, WhatMaySlipThroughAMembraneIsNamedIfThereIsAny) {
         Folder::write("x.yaml", text + membrane +
                                     "  pea: {type: passive_object, geometry: disk, nb: " + std::to_string(nb) + "}\n");
         Warnings const warnings;
-        build_world(load_scenario("x.yaml", {}), 1);
+        build_world(load_scenario("x.yaml", {}, object_types()), 1);
         EXPECT_EQ(warnings.text().find("'pea' may slip through") != std::string::npos, nb == 1) << warnings.text();
     }
 }
@@ -193,7 +194,9 @@ TEST(BadArenas, TooSmallForWalls) {
         "x.yaml",
         "arena_file: square.csv\narena_surface: 0.5\nphysics_engine: box2d\nobjects:\n  lamp: {type: static_light, "
         "geometry: global}\n");
-    EXPECT_EQ(error_of([] { Simulation const simulation(testing::test_program(), load_scenario("x.yaml", {}), {}); }),
+    EXPECT_EQ(error_of([] {
+                  Simulation const simulation(testing::test_program(), load_scenario("x.yaml", {}, object_types()), {});
+              }),
               "x.yaml:2: arena_surface: the arena is too small to build walls: its corners lie less than 1 mm apart; "
               "enlarge it");
 }
@@ -203,7 +206,7 @@ TEST(MissingFiles, OnlyArenasAreOfferedArenas) {
     Warnings const warnings;
     std::string const head = "initial_formation: imported\nformation_filename: poses.csv\narena_file: square.csv\n";
     Folder::write("x.yaml", head + "objects:\n  robots: {type: pogobot, geometry: disk}\n");
-    auto const message = [] { return error_of([] { build_world(load_scenario("x.yaml", {}), 1); }); };
+    auto const message = [] { return error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }); };
     EXPECT_EQ(message().find("x.yaml:3: arena_file: there is no file 'square.csv'; searched "), 0U) << message();
     EXPECT_NE(message().find("Bundled arenas"), std::string::npos) << message();
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
@@ -217,7 +220,7 @@ TEST(MissingFiles, FoldersInTheirPlaceAreRefusedWithTheirLine) {
     std::string const robots = "objects:\n  robots: {type: pogobot, geometry: disk}\n";
     auto const message = [&](std::string const& head) {
         Folder::write("x.yaml", head + robots);
-        return error_of([] { build_world(load_scenario("x.yaml", {}), 1); });
+        return error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); });
     };
     std::filesystem::create_directory("shapes.csv");
     EXPECT_EQ(message("seed: 1\narena_file: shapes.csv\n"),
@@ -243,7 +246,7 @@ TEST(MissingFiles, ConfigurationWithoutAnArenaIsToldTheKey) {
     Warnings const warnings;
     Folder::write("test.csv", "0,0\n1,0\n1,1\n0,1\n");
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot}\n");
-    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }),
               "x.yaml:1: the key 'arena_file' is missing; specify an outline, such as arenas/disk.csv");
 }
 
@@ -253,7 +256,7 @@ TEST(MissingFiles, FilesOfOtherFormationsAreNotLookedFor) {
     Folder::write("square.csv", "0,0\n1,0\n1,1\n0,1\n");
     Folder::write("x.yaml",
                   "arena_file: square.csv\nformation_filename: none.csv\nobjects:\n  robots: {type: pogobot}\n");
-    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }), "no error");
 }
 
 TEST(MissingFiles, FilesBesideTheConfigurationAreFoundAfterThoseOfTheWorkingFolder) {
@@ -261,7 +264,9 @@ TEST(MissingFiles, FilesBesideTheConfigurationAreFoundAfterThoseOfTheWorkingFold
     Warnings const warnings;
     std::filesystem::create_directory("conf");
     Folder::write("conf/x.yaml", "arena_file: own.csv\narena_surface: file\nobjects:\n  robots: {type: pogobot}\n");
-    auto const width_mm = [] { return build_world(load_scenario("conf/x.yaml", {}), 1).arena.bounds.size().x; };
+    auto const width_mm = [] {
+        return build_world(load_scenario("conf/x.yaml", {}, object_types()), 1).arena.bounds.size().x;
+    };
     Folder::write("conf/own.csv", "0,0\n500,0\n500,500\n0,500\n");
     EXPECT_EQ(width_mm(), 500.0F);
     Folder::write("own.csv", "0,0\n700,0\n700,500\n0,500\n");
@@ -276,7 +281,7 @@ TEST(MissingFiles, MessageSaysWhereWasLooked) {
     std::string const head = "objects:\n  robots: {type: pogobot}\narena_file: ";
     auto const message = [&](std::string const& file) {
         Folder::write("conf/x.yaml", head + file + "\n");
-        return error_of([] { build_world(load_scenario("conf/x.yaml", {}), 1); });
+        return error_of([] { build_world(load_scenario("conf/x.yaml", {}, object_types()), 1); });
     };
     EXPECT_EQ(message("none.csv")
                   .find("conf/x.yaml:3: arena_file: there is no file 'none.csv'; searched " + here + ", then in " +
@@ -293,11 +298,11 @@ TEST(ArenaScale, SizesOfTheFileAreKeptOnRequest) {
     Warnings const warnings;
     Folder::write("hall.csv", "100,100\n2100,100\n2100,1300\n100,1300\n");
     Folder::write("x.yaml", "arena_file: hall.csv\narena_surface: file\nobjects:\n  robots: {type: pogobot}\n");
-    Arena const arena = build_world(load_scenario("x.yaml", {}), 1).arena;
+    Arena const arena = build_world(load_scenario("x.yaml", {}, object_types()), 1).arena;
     EXPECT_EQ(arena.bounds.min, (Vec2{0, 0}));
     EXPECT_EQ(arena.bounds.max, (Vec2{2000, 1200}));
     Folder::write("hall.csv", "0,0\n2e7,0\n2e7,1e3\n0,1e3\n");
-    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }),
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }),
               "x.yaml:2: arena_surface: the arena 'hall.csv' measures 20000000.0 x 1000.0 mm; the largest supported "
               "size is 1000000 mm. Specify its area in mm2 instead of 'file'");
 }
@@ -308,10 +313,10 @@ TEST(Boundary, ArenaFileThatSaysSoIsPeriodic) {
     Folder::write("torus.csv", "# boundary_condition: periodic\n0,0\n1,0\n1,1\n0,1\n");
     std::string const text = "arena_file: torus.csv\nobjects:\n  robots: {type: pogobot}\n";
     Folder::write("x.yaml", text);
-    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}), 1).periodic);
+    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}, object_types()), 1).periodic);
     EXPECT_EQ(warnings.text(), "");
     Folder::write("x.yaml", text + "boundary_condition: solid\n");
-    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}), 1).periodic);
+    EXPECT_TRUE(build_world(load_scenario("x.yaml", {}, object_types()), 1).periodic);
     EXPECT_EQ(
         warnings.text(),
         "x.yaml:4: boundary_condition: ignored, because 'torus.csv' declares itself periodic; for walls, use another "
@@ -326,9 +331,9 @@ TEST(Boundary, WallsThatAPeriodicArenaDoesNotHaveMayHaveAnyPlace) {
         "arena_file: square.csv\nobjects:\n  robots: {type: pogobot}\n"
         "  walls: {type: pogowall, geometry: disk, x: 5000, y: 0}\n";
     Folder::write("x.yaml", text + "boundary_condition: periodic\n");
-    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+    EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }), "no error");
     Folder::write("x.yaml", text);
-    EXPECT_NE(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+    EXPECT_NE(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }), "no error");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "config/config_file.hpp"
+#include "lamps/lamp_types.hpp"
 #include "sim/build_world.hpp"
 
 namespace pogosim {
@@ -60,7 +61,7 @@ Built build(std::string const& text, std::string const& csv = "a,b\n") {
     Folder::write("links.csv", csv);
     Folder::write("x.yaml", "arena_file: arenas/square.csv\narena_surface: 4e6\n" + text);
     Built built;
-    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}), 1); });
+    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}, object_types()), 1); });
     built.warnings = warnings.text();
     return built;
 }

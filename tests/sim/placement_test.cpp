@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/config_file.hpp"
+#include "lamps/lamp_types.hpp"
 #include "physics/physics_engine.hpp"
 #include "sim/build_world.hpp"
 
@@ -55,7 +56,7 @@ Built build(std::string const& objects, char const* arena = kSquare, std::string
     Folder::write("poses.csv", "x,y\n100,100\n200,100\n300,100\n400,100\n");
     Folder::write("x.yaml", before + objects);
     Built built;
-    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}), 1); });
+    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}, object_types()), 1); });
     built.warnings = warnings.lines();
     return built;
 }
@@ -240,7 +241,7 @@ Built build_imported(std::string const& poses, std::string const& before = kImpo
     Folder::write("x.yaml",
                   before + fmt::format("  it: {{type: pogobot, geometry: disk, radius: 25, nb: {}}}\n", count) + more);
     Built built;
-    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}), 1); });
+    built.error = error_of([&] { built.world = build_world(load_scenario("x.yaml", {}, object_types()), 1); });
     built.warnings = warnings.lines();
     return built;
 }
@@ -298,7 +299,7 @@ TEST(ImportedObjects, ThatAreSmallMayOverlapByATenthOfTheirRadius) {
         Folder::write("x.yaml", kImported +
                                     "  it: {type: pogobot, geometry: disk, radius: 25, nb: 1}\n"
                                     "  bead: {type: passive_object, geometry: disk, radius: 2, nb: 2}\n");
-        EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}), 1); }), "no error");
+        EXPECT_EQ(error_of([] { build_world(load_scenario("x.yaml", {}, object_types()), 1); }), "no error");
         return warnings.lines();
     };
     EXPECT_EQ(warnings_of_two_beads("103.85"), Lines{});
