@@ -207,7 +207,8 @@ struct TableFile::Impl {
     std::int64_t row_count = 0;
     std::int64_t buffered_rows = 0;
     std::int64_t saved_rows = 0;
-    double saved_time_s = 0.0;
+    double saved_time_s = 0.0;  // of the last saved row
+    bool saved_moment_is_whole = true;
     bool awaits_sync = false;  // some of the saved rows
     bool open = false;         // also false after the first failure
 
@@ -314,15 +315,17 @@ struct TableFile::Impl {
     }
 
     void note_saved_until(std::int64_t row_end) {
-        auto const is_saved = [row_end](Moment const& moment) { return moment.row_end <= row_end; };
-        auto const left = std::ranges::find_if_not(unsaved_moments, is_saved);
-        note_saved({left != unsaved_moments.begin() ? std::prev(left)->time_s : saved_time_s, row_end});
-        unsaved_moments.erase(unsaved_moments.begin(), left);
+        auto const last = std::ranges::find_if(unsaved_moments,
+                                               [row_end](Moment const& moment) { return moment.row_end >= row_end; });
+        note_saved(*last, row_end);
+        unsaved_moments.erase(unsaved_moments.begin(), saved_moment_is_whole ? std::next(last) : last);
     }
 
-    void note_saved(Moment const& last) {
-        saved_rows = last.row_end;
+    /// `last`: of the last of these rows.
+    void note_saved(Moment const& last, std::int64_t row_end) {
+        saved_rows = row_end;
         saved_time_s = last.time_s;
+        saved_moment_is_whole = last.row_end == row_end;
     }
 
     /// If not all rows fit, on the disk or in memory, as many of the first moments as possible are kept.
@@ -352,7 +355,7 @@ struct TableFile::Impl {
             auto const rows = piece.Slice(written_end - first_row, end - written_end);
             if (status_of([&] { return unfinished->append(*rows); }).ok()) {
                 written_end = end;
-                note_saved({end == last.row_end ? last.time_s : saved_time_s, end});
+                note_saved(last, end);
                 left = left.subspan(count);
                 count = end < row_end ? std::min(count, left.size()) : 0;
             } else {
@@ -420,9 +423,9 @@ struct TableFile::Impl {
             fail(kind, path, reason);
         }
         fail(kind, path,
-             fmt::format("{}. It contains the rows up to t = {:.4f} s; to complete it, free some disk space and run: "
+             fmt::format("{}. It contains the rows up to t = {:.4f} s{}; to complete it, free some disk space and run: "
                          "pogosim-recover '{}'",
-                         reason, saved_time_s, path));
+                         reason, saved_time_s, saved_moment_is_whole ? "" : ", and not all of that time", path));
     }
 
     /// If the complete file cannot replace the unfinished one, it stays beside it under a name of its own.

@@ -152,8 +152,31 @@ TEST_F(OutputFailure, DiskTooSmallForTheRowsOfManyBatchesHoldsThoseOfTheFirstTim
     });
     auto const rows = read_unfinished(path("a.feather"))->num_rows();
     EXPECT_GT(rows, 1000);
-    expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s", rows / 7 - 1)});
+    expect_says(message, {"File too large", fmt::format("up to t = {}.0000 s{}", (rows - 1) / 7,
+                                                        rows % 7 == 0 ? ";" : ", and not all of that time;")});
     EXPECT_EQ(files_in_folder(), std::vector<std::string>{"a.feather"});  // the room of the complete file is free again
+}
+
+TEST_F(OutputFailure, DiskThatFillsUpWithinTheRowsOfATimeSaysThatNotAllOfThatTimeAreThere) {
+    std::vector<std::string> endings;
+    for (int limit_bytes = 100000; limit_bytes < 104000; limit_bytes += 500) {
+        FileSizeLimit const limit(static_cast<rlim_t>(limit_bytes));
+        std::string const name = path(fmt::format("{}.feather", limit_bytes));
+        DataFile file({.path = name, .flush_row_count = 1});  // each row is a piece of its own
+        std::string const message = output_error([&file] {
+            for (int i = 0; i < 100000; ++i) {
+                file.append({.time_s = static_cast<float>(i / 7), .category = "robots", .id = i % 977}, {});
+                if (i % 7 == 6) {
+                    file.save();
+                }
+            }
+        });
+        auto const rows = read_unfinished(name)->num_rows();
+        ASSERT_GT(rows, 7);
+        endings.emplace_back(rows % 7 == 0 ? ";" : ", and not all of that time;");
+        expect_says(message, {fmt::format("up to t = {}.0000 s{}", (rows - 1) / 7, endings.back())});
+    }
+    EXPECT_NE(std::ranges::count(endings, ";"), static_cast<std::ptrdiff_t>(endings.size()));
 }
 
 TEST_F(OutputFailure, DiskThatFillsUpWithTheCompleteFileLeavesTheUnfinishedOne) {
