@@ -53,7 +53,7 @@ void TreeBuilder::OnNull(YAML::Mark const& mark, YAML::anchor_t anchor) {
 void TreeBuilder::OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
                            std::string const& value) {
     if (value.find('\0') != std::string::npos) {
-        fail(line_of(mark), "a string contains a zero byte (\\0), which names and paths cannot");
+        fail(line_of(mark), "a string contains a zero byte (\\0), and no text of a configuration can");
     }
     if (value.find(kEndMark.substr(0, kEndMark.size() - 1)) != std::string::npos) {
         fail(line_of(mark), "not valid YAML: the string that starts here does not end; is its closing quote missing?");

@@ -153,7 +153,7 @@ TEST(ReadYaml, BytesThatAreNoTextAreRefusedWithTheirLine) {
                   .substr(0, 9),
               "x.yaml:1:");
     EXPECT_EQ(read_error("a: \"\\0\"\n"),
-              "x.yaml:1: a string contains a zero byte (\\0), which names and paths cannot");
+              "x.yaml:1: a string contains a zero byte (\\0), and no text of a configuration can");
     // Overlong, surrogate, beyond Unicode, cut short.
     for (char const* bytes : {"\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF0\x80\x80\xAF", "\xF4\x90\x80\x80",
                               "\xF8\x88\x80\x80\x80", "\xE2\x82", "\x80"}) {
