@@ -176,6 +176,19 @@ def test_parameters_set_in_the_run_take_effect_at_once_and_in_later_ones(sim: po
     assert dict(sim.parameters) == {"gain": 2.5, "table": [3.0, 4.0]}
 
 
+def test_parameters_that_a_map_gave_are_among_those_that_were_set(hosted: Path, scene: Path) -> None:
+    settings = {"parameters.table": [0.0, 1.0], "parameters": {"gain": 2.5, "fail": {"at": 7}}}
+    with pogosim.Simulation(hosted, scene, set=settings) as simulation:
+        assert dict(simulation.parameters) == {"gain": 2.5, "fail.at": 7}
+        simulation.step(10)
+        assert simulation.user_data["gain"].tolist() == [2.5] * 3
+        simulation.parameters["gain"] = 3.5
+        simulation.reset()
+        simulation.step(10)
+        assert simulation.user_data["gain"].tolist() == [3.5] * 3
+        assert dict(simulation.parameters) == {"gain": 3.5, "fail.at": 7}
+
+
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [

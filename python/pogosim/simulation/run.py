@@ -31,6 +31,7 @@ from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
 from pogosim.simulation.user_data import user_data_type
+from pogosim.varied import leaves
 from pogosim.yaml_1_2 import dump_yaml
 
 if TYPE_CHECKING:
@@ -76,6 +77,17 @@ def checked_settings(values: Mapping[str, Any] | None) -> dict[str, Any]:
 def settings_of(values: Mapping[str, Any]) -> list[str]:
     """Return the settings as arguments of `--set`."""
     return [f"{key}={yaml_text(key, value)}" for key, value in values.items()]
+
+
+def parameters_in(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values under `parameters` in settings, by name: those of a map, and those that follow one by one."""
+    found: dict[str, Any] = {}
+    for key, value in settings.items():
+        if key == "parameters":
+            found = dict(leaves(value))
+        elif key.startswith("parameters."):
+            found[key.removeprefix("parameters.")] = value
+    return found
 
 
 class Parameters(MutableMapping[str, Any]):
@@ -200,11 +212,7 @@ class Simulation:
     def _open(self, seed: int | None) -> None:
         self._current.open(self.program, self.configuration, settings_of(self._settings), seed, self._strict)
         self._seed = self.seed
-        self._parameter_values = {
-            key.removeprefix("parameters."): value
-            for key, value in self._settings.items()
-            if key.startswith("parameters.")
-        }
+        self._parameter_values = parameters_in(self._settings)
         self._pass_messages_on()
 
     # ---- The run
@@ -725,6 +733,7 @@ class Simulation:
             if self._current.run is not None or self._is_closed:  # else the last reset failed, perhaps because of this
                 text = yaml_text(key, plain).encode()
                 check(library().pogosim_run_set_parameter(self._run.pointer, name.encode(), text))
+            self._settings.pop(key, None)  # it comes after a map `parameters`
             self._settings[key] = plain
             self._parameter_values[name] = plain
 
