@@ -99,6 +99,13 @@ struct Key {
         return key;
     }
 
+    /// The same key of a switch, which the values in use (`resolved_configuration`) name only where it is not at its
+    /// default. For switches that came after the files of many runs: what does not use them says what it said before.
+    template <bool T::*kSwitch, bool kDefault>
+    Key left_out_at_default() const {
+        return only_if([](T const& values) { return values.*kSwitch != kDefault; });
+    }
+
     /// The same key, whose value check_scenario() asks for.
     Key needing_a_name() const {
         Key key = *this;

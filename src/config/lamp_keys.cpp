@@ -18,7 +18,7 @@ std::span<Key<LampSpec> const> lamp_keys() {
           "Walls and bodies hide the lamp from the cells of the light map behind them; see `walls_block_light` and "
           "`blocks_light`. Not for light without a place: `geometry` global or arena, unless it is a gradient, and "
           "planes."}
-            .only_if([](LampSpec const& lamp) { return lamp.casts_shadows; }),
+            .left_out_at_default<&LampSpec::casts_shadows, false>(),
     };
     return keys;
 }

@@ -39,7 +39,7 @@ std::span<Key<BodySpec> const> blocking_keys() {
     static std::array const keys{
         K{"blocks_infrared", &BodySpec::blocks_infrared, any(), "",
           "No message passes the object. A membrane blocks along the line through its bodies."}
-            .only_if([](BodySpec const& body) { return body.blocks_infrared; }),
+            .left_out_at_default<&BodySpec::blocks_infrared, false>(),
     };
     return keys;
 }
@@ -49,8 +49,8 @@ constexpr std::string_view kBlocksLight = "The object throws shadows in the ligh
 std::span<Key<BodySpec> const> shadow_keys() {
     using K = Key<BodySpec>;
     static std::array const keys{
-        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}.only_if(
-            [](BodySpec const& body) { return !body.blocks_light; }),
+        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}
+            .left_out_at_default<&BodySpec::blocks_light, true>(),
     };
     return keys;
 }
@@ -59,8 +59,8 @@ std::span<Key<BodySpec> const> shadow_keys() {
 std::span<Key<BodySpec> const> shadow_of_robot_keys() {
     using K = Key<BodySpec>;
     static std::array const keys{
-        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}.only_if(
-            [](BodySpec const& body) { return body.blocks_light; }),
+        K{"blocks_light", &BodySpec::blocks_light, any(), "", kBlocksLight}
+            .left_out_at_default<&BodySpec::blocks_light, false>(),
     };
     return keys;
 }

@@ -111,10 +111,10 @@ std::span<Key<WallSpec> const> wall_keys() {
           "Coefficient of restitution of the walls; above 1, they add energy."},
         K{"walls_block_infrared", &WallSpec::block_infrared, any(), "",
           "No message passes the walls: the outline of the arena and its holes."}
-            .only_if([](WallSpec const& walls) { return walls.block_infrared; }),
+            .left_out_at_default<&WallSpec::block_infrared, false>(),
         K{"walls_block_light", &WallSpec::block_light, any(), "",
           "The walls throw shadows in the light of lamps with `casts_shadows`."}
-            .only_if([](WallSpec const& walls) { return !walls.block_light; }),
+            .left_out_at_default<&WallSpec::block_light, true>(),
     };
     return keys;
 }

@@ -64,13 +64,29 @@ TEST(ValuesInUse, LeaveOutWhatMeansNothingInTheChosenMode) {
     EXPECT_FALSE(has(load("boundary_condition: periodic\nwall_friction: 0.5\n").source->values, "wall_friction"));
 }
 
-TEST(ValuesInUse, SayThatSomethingBlocksInfraredOnlyIfItDoes) {
-    EXPECT_FALSE(has(load("walls_block_infrared: false\n").source->values, "walls_block_infrared"));
-    EXPECT_TRUE(has(load("walls_block_infrared: true\n").source->values, "walls_block_infrared"));
-    for (std::string const value : {"false", "true"}) {
-        Scenario const scenario =
-            load(kRobots + "  it: {type: passive_object, geometry: disk, blocks_infrared: " + value + "}\n");
-        EXPECT_EQ(has(*find_path(scenario.source->values, "objects.it"), "blocks_infrared"), value == "true");
+TEST(ValuesInUse, NameTheSwitchesOfShadowsAndBlockedInfraredOnlyIfTheyAreNotAtTheirDefault) {
+    struct Switch {
+        std::string entry;  // where it stands; empty: at the top level
+        std::string key;
+        std::string default_value;
+    };
+    for (auto const& [entry, key, default_value] :
+         {Switch{"", "walls_block_infrared", "false"}, Switch{"", "walls_block_light", "true"},
+          Switch{"it", "blocks_infrared", "false"}, Switch{"it", "blocks_light", "true"},
+          Switch{"robots", "blocks_light", "false"}, Switch{"lamp", "casts_shadows", "false"}}) {
+        for (std::string const value : {"false", "true"}) {
+            std::string const line = key + ": " + value;
+            std::string text = entry.empty() ? line + "\n" : "";
+            text += "objects:\n";
+            for (std::string const own :
+                 {"robots: {type: pogobot", "it: {type: passive_object", "lamp: {type: static_light"}) {
+                text += "  " + own + ", geometry: disk, radius: 20";
+                text += own.starts_with(entry + ":") ? ", " + line + "}\n" : "}\n";
+            }
+            Node const values = load(text).source->values;
+            Node const& map = entry.empty() ? values : *find_path(values, "objects." + entry);
+            EXPECT_EQ(has(map, key), value != default_value) << text;
+        }
     }
 }
 
