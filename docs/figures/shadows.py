@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from pictures import Picture, from_figure
 from pogosim import Simulation
+from pogosim.object_facts import entries_in
 from pogosim.picture.layers import placed
-from pogosim.scene import entries
 from pogosim.shapes import shape_of
 
 NAMES = ("shadows.png",)
@@ -65,10 +65,10 @@ def draw_panel(axes: Axes, folder: Path, *, shadows: bool) -> pd.DataFrame:
         light = np.array(simulation.light_map)
     axes.imshow(light, cmap="inferno", vmin=0, vmax=BRIGHTEST, extent=(0, SIDE_MM, SIDE_MM, 0))
     axes.add_patch(Polygon(WALL_MM, facecolor="0.35", edgecolor="white", linewidth=0.8))
-    for name, own in entries(settings):
-        poses = np.array(own.get("poses", ()), dtype=float).reshape(-1, 3)
-        fill = "tab:cyan" if name == "robots" else "0.55"
-        for corners in placed(shape_of(own).outline(), poses[:, :2], poses[:, 2]):
+    for own in entries_in(settings):
+        poses = np.array(own.settings.get("poses", ()), dtype=float).reshape(-1, 3)
+        fill = "tab:cyan" if own.category == "robots" else "0.55"
+        for corners in placed(shape_of(own.settings).outline(), poses[:, :2], poses[:, 2]):
             axes.add_patch(Polygon(corners, facecolor=fill, edgecolor="black"))
     axes.set_title("casts_shadows: true" if shadows else "casts_shadows: false (default)", fontsize=9)
     axes.set_xticks([])

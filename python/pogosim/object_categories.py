@@ -1,7 +1,9 @@
-"""The categories of objects in a file without the column robot_category: those that its configuration says.
+"""The categories of objects in a file without the column robot_category: by their ids.
 
-Robots, pogobjects and active objects have the ids 0, 1, ... in the order of the configuration, all others 65535, 65534,
-..., or from the number of objects on downwards if there are more than 65536 (ObjectMaker in src/sim/build_world.cpp).
+The metadata `objects` say which ids each entry has. Where they do not, as in older files and in those of several runs
+with different numbers of objects, the configuration does: objects with a program and a rigid body have the ids 0, 1,
+... in its order, all others 65535, 65534, ..., or from the number of objects on downwards if there are more than 65536
+(ObjectMaker in src/sim/build_world.cpp).
 """
 
 from __future__ import annotations
@@ -17,12 +19,12 @@ import pandas as pd
 
 from pogosim.arguments import number
 from pogosim.batch.paths import set_in_dict
+from pogosim.object_facts import OBJECTS, Entry, entries_in, entries_of
 from pogosim.run_columns import is_one_run
-from pogosim.scene import RAYS, SPOTS, TALKERS, Kind, bodies_of, entries, read_periodic, type_of
+from pogosim.scene import Kind, bodies_of, read_periodic
 from pogosim.several_files import configuration_of
 
 IDS_ON_AIR = 65536
-OBJECTS = "objects"
 
 
 class UnknownCategoriesError(ValueError):
@@ -66,14 +68,15 @@ def changed(configuration: dict[str, Any], settings: dict[str, Any]) -> dict[str
 
 def categories_of(rows: pd.DataFrame, configuration: dict[str, Any], metadata: Mapping[str, Any]) -> Any:
     """Return the categories of the objects of rows, of one configuration: an array, or one name for all."""
-    bodies = bodies_of(configuration)
-    recorded = recorded_categories(configuration) or {name for name, _ in bodies} or {"robots"}
+    entries = entries_in(configuration, metadata.get(OBJECTS))
+    bodies = bodies_of(entries)
+    recorded = recorded_categories(configuration) or {own.category for own in bodies} or {"robots"}
     if len(recorded) == 1:
         return next(iter(recorded))
     if "robot_id" not in rows:
         raise unknown("no column robot_id")
     if given := metadata.get("configuration"):
-        check_categories(given, bodies)
+        check_categories(given, {own.category for own in entries})
     ids = rows["robot_id"].to_numpy()
     names = np.full(len(ids), None, dtype=object)
     for name, first, last in ids_of(bodies, read_periodic(configuration)):
@@ -89,13 +92,13 @@ def last_kinds(rows: pd.DataFrame, kinds: list[Kind]) -> npt.NDArray[np.int64]:
     return np.array(rows["robot_category"].map(last).fillna(-1), dtype=np.int64)
 
 
-def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
+def kinds_of(rows: pd.DataFrame, metadata: Mapping[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
     """Return which of the entries of the configuration (`pogosim.scene.bodies_of`) the object of each row is of.
 
     Args:
         rows: Those of one run, with the column robot_category.
-        configuration: That of the run.
-        kinds: What `pogosim.scene.read_kinds` makes of it.
+        metadata: Those of the run.
+        kinds: What `pogosim.scene.kinds_in` makes of its entries.
 
     Returns:
         Shape (rows,), integers; -1: of a category that is not in the configuration.
@@ -112,7 +115,8 @@ def kinds_of(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[Kind
     if "robot_id" not in rows:
         raise unknown("no column robot_id")
     ids = rows["robot_id"].to_numpy()
-    for place, (name, first, final) in enumerate(ids_of(bodies_of(configuration), read_periodic(configuration))):
+    is_periodic = read_periodic(configuration_of(dict(metadata)))
+    for place, (name, first, final) in enumerate(ids_of(bodies_of(entries_of(metadata)), is_periodic)):
         is_own = is_told_by_id & (names == name).to_numpy() & (ids >= first) & (ids <= final)
         numbers[is_own] = place
         is_told_by_id = is_told_by_id & ~is_own
@@ -127,33 +131,30 @@ def recorded_categories(configuration: dict[str, Any]) -> set[str]:
     return set(map(str, names if isinstance(names, list) else [names] if isinstance(names, str) else []))
 
 
-def check_categories(given: Any, bodies: list[tuple[str, dict[str, Any]]]) -> None:
+def check_categories(given: Any, known: set[str]) -> None:
     """Raise UnknownCategoriesError if a batch has combinations with other categories than all have in common."""
     objects = given.get(OBJECTS) if isinstance(given, dict) else None
     names = [name for name, own in objects.items() if own is not None] if isinstance(objects, dict) else []
-    known = {name for name, _ in bodies}
-    lamps = [name for name, own in entries({OBJECTS: objects}) if type_of(own) in SPOTS + RAYS]
-    if any(str(name) not in known and str(name) not in lamps for name in names):
+    lamps = {own.category for own in entries_in({OBJECTS: objects}) if "lamp" in own.has}
+    if any(str(name) not in known | lamps for name in names):
         raise unknown("its runs have different categories of objects")
 
 
-def ids_of(bodies: list[tuple[str, dict[str, Any]]], is_periodic: bool) -> list[tuple[str, int, int]]:
-    """Return the first and the last id of the objects of each category, in the order of the configuration."""
-    counts = [number(own.get("nb"), -1.0) for _, own in bodies]
-    counts = [
-        0.0 if is_periodic and type_of(own) == "pogowall" else count
-        for (_, own), count in zip(bodies, counts, strict=True)
-    ]
+def ids_of(bodies: list[Entry], is_periodic: bool) -> list[tuple[str, int, int]]:
+    """Return the first and the last id of the objects of each entry, in the order of the configuration."""
+    if all(own.knows_ids for own in bodies):
+        return [(own.category, own.first_id or 0, (own.first_id or 0) + (own.count or 0) - 1) for own in bodies]
+    counts = [0.0 if is_periodic and own.is_wall else number(own.settings.get("nb"), -1.0) for own in bodies]
     if any(count < 0.0 or count != int(count) for count in counts):
         raise unknown("its configuration does not say how many objects of each category there are")
     up, down = 0, max(int(sum(counts)), IDS_ON_AIR) - 1
     ids = []
-    for (name, own), count in zip(bodies, map(int, counts), strict=True):
-        if type_of(own) in TALKERS:
-            ids.append((name, up, up + count - 1))
+    for own, count in zip(bodies, map(int, counts), strict=True):
+        if own.is_robot:
+            ids.append((own.category, up, up + count - 1))
             up += count
         else:
-            ids.append((name, down - count + 1, down))
+            ids.append((own.category, down - count + 1, down))
             down -= count
     return ids
 

@@ -10,15 +10,9 @@ import numpy as np
 from matplotlib.path import Path as Outline
 
 from pogosim.arguments import number
-from pogosim.defaults import COMMUNICATION_RADIUS_MM
+from pogosim.object_facts import Entry, type_of
 from pogosim.periodic import minimum_image
 from pogosim.shapes import Floats, Shape, shape_of
-
-MEMBRANES = ("membrane", "rectmembrane")
-RAYS = ("rotating_ray_of_light", "alternating_rays_of_light")
-SPOTS = ("static_light", "orbiting_static_light", "orbiting_light")
-
-TALKERS = ("pogobot", "pogobject", "active_object")  # bodies with a program
 
 # Levels of light are sensor counts, and sums of them stop here.
 BRIGHTEST = 32767
@@ -29,16 +23,20 @@ class Kind:
     """How the objects of one entry of `objects` look."""
 
     category: str
-    type: str  # lower case, "pogobot"
     shape: Shape
+    runs_program: bool = True
+    is_membrane: bool = False
+    segments: bool = False  # of a membrane: it is drawn as a band
     half_thickness_mm: float = 0.0  # of a membrane
+    is_wall: bool = False  # it has a program, and no body
     position_mm: tuple[float, float] | None = None  # x and y of a wall, where both are given
-    communication_radius_mm: float = 0.0  # from an emitter to the edge of a listener; 0: mute
+    talks: bool = True  # it has a rigid body and a program, so lines may join it to others near enough to hear it
+    communication_radius_mm: float = 0.0  # if it talks: from an emitter to the edge of a listener; 0: mute
 
 
 @dataclass(frozen=True)
 class Lamp:
-    """A spot of light: static_light or orbiting_static_light."""
+    """A spot of light, which the keys of static_light and orbiting_static_light describe."""
 
     shape: Shape
     centre_mm: tuple[float, float]
@@ -123,82 +121,50 @@ def floor_outline(polygons: list[Floats]) -> Outline:
     return Outline.make_compound_path(*(Outline(np.vstack([p, p[:1]]), closed=True) for p in loops))
 
 
-def entries(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    """Entries of `objects` that are maps, each with its name; a category may be a list of several."""
-    objects = configuration.get("objects")
-    pairs = objects.items() if isinstance(objects, dict) else []
-    return [
-        (str(name), settings)
-        for name, value in pairs
-        for settings in (value if isinstance(value, list) else [value])
-        if isinstance(settings, dict)
-    ]
-
-
-def type_of(settings: dict[str, Any]) -> str:
-    """Type of an entry in lower case."""
-    return str(settings.get("type", "pogobot")).lower()
-
-
-def half_thickness_of(settings: dict[str, Any]) -> float:
-    """Half the thickness of a membrane, mm; 0 for what is none."""
-    dot_radius = number(settings.get("dot_radius"), 10.0)
-    if type_of(settings) == "rectmembrane":
-        return number(settings.get("rect_thickness"), dot_radius) / 2.0
-    return dot_radius if type_of(settings) == "membrane" else 0.0
-
-
-def position_of(settings: dict[str, Any]) -> tuple[float, float] | None:
-    """`x` and `y` of an entry, mm; None unless it has both."""
-    x, y = (number(settings.get(axis), math.nan) for axis in ("x", "y"))
-    return (x, y) if math.isfinite(x) and math.isfinite(y) else None
-
-
-def communication_radius_of(settings: dict[str, Any]) -> float:
-    """Infrared range of a body with a program, mm; 0 for all else."""
-    if type_of(settings) not in TALKERS:
-        return 0.0
-    return number(settings.get("communication_radius"), COMMUNICATION_RADIUS_MM)
-
-
 def read_periodic(configuration: dict[str, Any]) -> bool:
     """Tell whether what leaves the arena comes back on the other side."""
     return str(configuration.get("boundary_condition")).lower() == "periodic"
 
 
-def read_top_speed(configuration: dict[str, Any]) -> float | None:
-    """Return how fast the fastest robots of a configuration drive, mm/s; None if it does not say."""
-    drivers = [settings for _, settings in entries(configuration) if type_of(settings) == "pogobot"]
-    speeds = [number(own.get("max_linear_speed"), math.nan) for own in drivers]
-    return max((speed for speed in speeds if math.isfinite(speed)), default=None)
+def top_speed(entries: list[Entry]) -> float | None:
+    """Return how fast the fastest robots drive, mm/s; None if nothing says it."""
+    return max((own.top_speed_mm_s for own in entries if math.isfinite(own.top_speed_mm_s)), default=None)
 
 
-def bodies_of(configuration: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    """Entries of all objects except lamps, each with the name of its category."""
-    return [(name, own) for name, own in entries(configuration) if type_of(own) not in SPOTS + RAYS]
+def bodies_of(entries: list[Entry]) -> list[Entry]:
+    """Entries of all objects except lamps."""
+    return [own for own in entries if "lamp" not in own.has]
 
 
-def read_kinds(configuration: dict[str, Any]) -> list[Kind]:
+def spots_of(entries: list[Entry]) -> list[Entry]:
+    """Entries of lamps that are drawn."""
+    return [own for own in entries if own.drawn_as == "spot"]
+
+
+def kinds_in(entries: list[Entry]) -> list[Kind]:
     """Return how the objects of each entry look, in the order of `bodies_of`."""
     return [
         Kind(
-            name,
-            type_of(own),
-            shape_of(own),
-            half_thickness_of(own),
-            position_of(own) if type_of(own) == "pogowall" else None,
-            communication_radius_of(own),
+            own.category,
+            shape_of(own.settings),
+            runs_program="robot" in own.has,
+            is_membrane="membrane" in own.has,
+            segments=own.segments,
+            half_thickness_mm=own.half_thickness_mm,
+            is_wall=own.is_wall,
+            position_mm=own.position_mm,
+            talks=own.is_robot,
+            communication_radius_mm=own.infrared_range_mm if own.is_robot else 0.0,
         )
-        for name, own in bodies_of(configuration)
+        for own in bodies_of(entries)
     ]
 
 
-def read_lamps(configuration: dict[str, Any]) -> list[Lamp]:
+def lamps_in(entries: list[Entry]) -> list[Lamp]:
     """All spots of light; `nb` of an entry shine at the same place."""
     lamps = []
-    for _, settings in entries(configuration):
-        if type_of(settings) in SPOTS:
-            lamps += [read_lamp(settings)] * int(number(settings.get("nb"), 1.0))
+    for own in spots_of(entries):
+        lamps += [read_lamp(own.settings)] * int(number(own.settings.get("nb"), 1.0))
     return lamps
 
 
@@ -230,15 +196,13 @@ def read_lamp(settings: dict[str, Any]) -> Lamp:
     )
 
 
-def ray_names(configuration: dict[str, Any]) -> list[str]:
-    """Categories of lighthouses."""
-    return [name for name, settings in entries(configuration) if type_of(settings) in RAYS]
-
-
-def shadow_names(configuration: dict[str, Any]) -> list[str]:
-    """Categories of lamps that cast shadows."""
-    lamps = [(name, settings) for name, settings in entries(configuration) if type_of(settings) in SPOTS]
-    return list(dict.fromkeys(name for name, settings in lamps if settings.get("casts_shadows") is True))
+def unseen_light(entries: list[Entry]) -> list[str]:
+    """What is not drawn of lamps: beams of lighthouses, light of kinds that only the simulator knows, and shadows."""
+    lamps = [own for own in entries if "lamp" in own.has]
+    beams = [f"beams of {own.category}" for own in lamps if own.drawn_as == "beam"]
+    others = [f"light of {own.category}" for own in lamps if own.drawn_as not in ("beam", "spot")]
+    shadows = [f"shadows of {own.category}" for own in spots_of(lamps) if own.settings.get("casts_shadows") is True]
+    return beams + list(dict.fromkeys(others + shadows))
 
 
 def light_levels(

@@ -15,7 +15,7 @@ import pandas as pd
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RUN, is_one_run, run_numbers, tells_runs_apart
 from pogosim.times import with_exact_times
-from pogosim.varied import MISSING, in_common, varied_parameters
+from pogosim.varied import MISSING, OBJECTS, facts_in_common, in_common, varied_parameters
 
 Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
 
@@ -210,6 +210,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         parts = [with_exact_times(rows) for rows in parts]
     metadata: dict[str, Any] = in_common([metadata for _, _, metadata in files])
     metadata = {} if metadata is MISSING else metadata
+    if facts := facts_in_common([own.get(OBJECTS) for _, _, own in files]):
+        metadata[OBJECTS] = facts
     metadata.setdefault("configuration", {})
     if not metadata.get("arena_polygons") and any(entry.get("arena_polygons") for entry in combinations):
         metadata["combinations"] = combinations

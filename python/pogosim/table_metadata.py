@@ -57,6 +57,14 @@ def parse_configuration(text: Any) -> dict[str, Any]:
     return {}
 
 
+def parse_facts(stored: Any) -> Any:
+    """Parse the metadata `objects`: JSON; or a map already, as in `attrs`. What is neither stays as it is stored."""
+    try:
+        return json.loads(stored) if isinstance(stored, str) else stored
+    except (ValueError, RecursionError):
+        return stored
+
+
 def saved_attrs(texts: dict[str, str]) -> list[dict[str, Any]]:
     """Return the `attrs` that pandas and pyarrow wrote into the metadata of a table, in JSON."""
     found = []

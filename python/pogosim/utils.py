@@ -22,10 +22,10 @@ from pogosim.outputs import PathLike
 from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
 from pogosim.several_files import files_that_fit, is_pattern, join_files
 from pogosim.table_formats import CSV, format_in
-from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of, shared
+from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of, parse_facts, shared
 from pogosim.table_metadata import parse_configuration as parse_configuration
 from pogosim.tables import read_other
-from pogosim.varied import plain
+from pogosim.varied import OBJECTS, plain
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
 
 given = Arguments()
@@ -48,6 +48,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         "configuration": a dictionary; empty if the file has none or it cannot be parsed.
         "resolved_configuration": a dictionary of every key with its value in the run, defaults
         included; not there if the file has none.
+        "objects": a dictionary with a list for each category, of what the objects of its entries have; not there if
+        the file has none.
         "arena_polygons": a list of outlines, each an array of shape (corners, 2) with x and y in mm (files of
         simulators up to 0.10 have them in units of 100 mm, which is recognised by the positions of the robots);
         it remains a string if it is not a list of polygons.
@@ -99,6 +101,8 @@ def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, A
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
         metadata["arena_polygons"] = in_millimetres(parse_polygons(metadata["arena_polygons"]), rows)
+    if OBJECTS in metadata:
+        metadata[OBJECTS] = parse_facts(metadata[OBJECTS])
     if "combinations" in metadata:
         metadata["combinations"] = parse_combinations(metadata["combinations"])
     return rows, metadata

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 MISSING = object()
+
+OBJECTS = "objects"  # the entry of configurations, and that of metadata which says what those objects have
 
 # What differs between any two runs without being a parameter.
 NO_PARAMETERS = (
@@ -62,3 +64,22 @@ def in_common(values: Sequence[Any]) -> Any:
         kept = {key: value for key, value in common.items() if value is not MISSING}
         return kept if kept or not first else MISSING
     return first if all(plain(value) == plain(first) for value in values[1:]) else MISSING
+
+
+def is_facts(value: Any) -> bool:
+    """Tell whether a value is what metadata `objects` say of an entry."""
+    return isinstance(value, Mapping) and isinstance(value.get("has"), (list, tuple))
+
+
+def facts_in_common(of_runs: Sequence[Any]) -> dict[str, Any]:
+    """Return what the metadata `objects` of several runs have in common, of entries that are in all of them."""
+    if not all(isinstance(told, Mapping) for told in of_runs):
+        return {}
+    common = {}
+    for category in of_runs[0]:
+        lists = [told.get(category) for told in of_runs]
+        if all(isinstance(own, list) and len(own) == len(lists[0]) for own in lists):
+            shared = [in_common(entries) for entries in zip(*lists, strict=True)]
+            if all(map(is_facts, shared)):
+                common[category] = shared
+    return common

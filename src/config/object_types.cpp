@@ -62,6 +62,7 @@ Node read_object(Place const& place, std::string const& category, Reading& readi
     }
     ObjectType const& type = reading.types->at({*type_node, reader.path_of("type")});
     object.type = type.name;
+    object.drawn_as = type.drawn_as;
     type.read(reader, object);
     reader.finish();
     reader.set_value("type", plain_node(object.type));

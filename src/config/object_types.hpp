@@ -17,6 +17,7 @@ struct ObjectType {
     std::string_view name;
     std::string_view doc;
     void (*read)(MapReader& reader, ObjectConfig& object);  // fills spec and position from its keys
+    DrawnAs drawn_as = DrawnAs::nothing;                    // a lamp
 };
 
 std::span<ObjectType const> solid_types();

@@ -35,6 +35,13 @@ inline constexpr double kMaxLength = 1.0e6;
 /// More objects than fit into the memory of most machines.
 inline constexpr int kMaxObjects = 10'000'000;
 
+/// What pictures and films of a data file draw of a lamp, since they know its keys only.
+enum class DrawnAs {
+    nothing,  // a note says that its light is not drawn
+    spot,     // the light that the keys of static_light and orbiting_static_light describe
+    beam,     // a note says that its beams are not drawn
+};
+
 /// How the objects of an entry are placed separately from other entries.
 struct OwnFormation {
     std::optional<std::string> name{};  // absent: that of the top level
@@ -45,16 +52,17 @@ struct OwnFormation {
 
 /// One entry of `objects`.
 struct ObjectConfig {
-    std::string category;               // its name in the configuration
-    std::string type;                   // lower case, "pogobot"
-    int nb = 1;                         // how many
-    std::optional<Vec2> position_mm;    // both x and y given: all stand there
-    float heading_rad = 0.0F;           // with position_mm
-    std::vector<Placement> poses;       // one for each object, instead of position_mm
-    OwnFormation own_formation;         // without position_mm and poses a formation places those with a body: this one
-    ObjectSpec spec;                    // what the type makes them of
-    std::string line;                   // where it is written, "conf/a.yaml:14", for messages
-    std::optional<std::size_t> item{};  // the category is a list of entries, and this one has the place, from 0
+    std::string category;             // its name in the configuration
+    std::string type;                 // lower case, "pogobot"
+    int nb = 1;                       // how many
+    std::optional<Vec2> position_mm;  // both x and y given: all stand there
+    float heading_rad = 0.0F;         // with position_mm
+    std::vector<Placement> poses;     // one for each object, instead of position_mm
+    OwnFormation own_formation;       // without position_mm and poses a formation places those with a body: this one
+    ObjectSpec spec;                  // what the type makes them of
+    DrawnAs drawn_as = DrawnAs::nothing;  // of a lamp
+    std::string line;                     // where it is written, "conf/a.yaml:14", for messages
+    std::optional<std::size_t> item{};    // the category is a list of entries, and this one has the place, from 0
 };
 
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.

@@ -15,11 +15,13 @@ namespace pogosim {
 namespace {
 
 constexpr std::array kLampTypes{
-    ObjectType{"static_light", "Stationary lamp.", spot::read_static_light},
-    ObjectType{"orbiting_static_light", "Lamp that moves along a circle.", spot::read_orbiting_static_light},
-    ObjectType{"rotating_ray_of_light", "Lighthouse with one beam.", rotating_ray::read_rotating_ray_of_light},
+    ObjectType{"static_light", "Stationary lamp.", spot::read_static_light, DrawnAs::spot},
+    ObjectType{"orbiting_static_light", "Lamp that moves along a circle.", spot::read_orbiting_static_light,
+               DrawnAs::spot},
+    ObjectType{"rotating_ray_of_light", "Lighthouse with one beam.", rotating_ray::read_rotating_ray_of_light,
+               DrawnAs::beam},
     ObjectType{"alternating_rays_of_light", "Two lighthouses in two corners, active in turn.",
-               alternating_rays::read_alternating_rays_of_light},
+               alternating_rays::read_alternating_rays_of_light, DrawnAs::beam},
 };
 
 }  // namespace

@@ -189,14 +189,10 @@ private:
     std::uint32_t next_down_;
 };
 
-/// There are no arena walls in a periodic world.
-bool is_created(World const& world, ObjectConfig const& object) {
-    bool const is_wall = object.spec.robot && !object.spec.body;
-    if (is_wall && world.periodic && object.nb > 0) {
+void warn_of_walls(ObjectConfig const& object) {
+    if (object.spec.robot) {
         log().warn("objects.{}: a periodic arena has no walls, so no {} is created", object.category, object.type);
-        return false;
     }
-    return object.spec.robot || object.spec.body;
 }
 
 void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
@@ -204,9 +200,11 @@ void add_objects(Scenario const& scenario, World& world, std::uint32_t seed) {
     std::vector<std::size_t> created;  // indices into scenario.objects
     std::size_t object_count = 0;
     for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
-        if (is_created(world, scenario.objects[i])) {
+        if (is_created(scenario.objects[i], world.periodic)) {
             created.push_back(i);
             object_count += poses[i].size();
+        } else {
+            warn_of_walls(scenario.objects[i]);
         }
     }
     ObjectMaker maker(world, static_cast<std::uint32_t>(object_count), seed);
@@ -323,6 +321,12 @@ World built_world(Scenario const& scenario, std::uint32_t seed) {
 }
 
 }  // namespace
+
+bool is_created(ObjectConfig const& object, bool is_periodic) {
+    bool const is_wall = object.spec.robot && !object.spec.body;
+    bool const is_left_out = is_wall && is_periodic && object.nb > 0;
+    return (object.spec.robot || object.spec.body) && !is_left_out;
+}
 
 void check_arena(Scenario const& scenario) {
     World world;

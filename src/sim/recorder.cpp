@@ -16,6 +16,7 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "sim/files_of_run.hpp"
+#include "sim/object_facts.hpp"
 #include "world/link_places.hpp"
 
 namespace pogosim {
@@ -47,16 +48,17 @@ std::string polygons_as_yaml(Arena const& arena) {
     return text;
 }
 
-/// Schema metadata: program_version, configuration and resolved_configuration (see ConfigurationText), and
-/// arena_polygons (YAML list of lists of {x, y}, mm). `run.mm_to_pixels` is found here.
-std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, Arena const& arena,
+/// Schema metadata: program_version, configuration and resolved_configuration (see ConfigurationText), objects (see
+/// object_facts()), and arena_polygons (YAML list of lists of {x, y}, mm). `run.mm_to_pixels` is found here.
+std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, World const& world,
                                                               RunValues run) {
-    run.mm_to_pixels = fitted_mm_to_pixels(scenario.view, arena);
+    run.mm_to_pixels = fitted_mm_to_pixels(scenario.view, world.arena);
     ConfigurationText const text = configuration_text(scenario, run);
     return {{"program_version", POGOSIM_VERSION_STRING},
             {"configuration", text.written},
             {"resolved_configuration", text.resolved},
-            {"arena_polygons", polygons_as_yaml(arena)}};
+            {"objects", object_facts(scenario, world)},
+            {"arena_polygons", polygons_as_yaml(world.arena)}};
 }
 
 std::vector<bool> recorded_categories(Scenario const& scenario, World const& world) {
@@ -166,7 +168,7 @@ void Recorder::open_message_log() {
 }
 
 std::vector<std::pair<std::string, std::string>> Recorder::metadata() const {
-    return run_metadata(scenario_, world_.arena,
+    return run_metadata(scenario_, world_,
                         {.seed = seed_,
                          .time_step_s = world_.time_step_s,
                          .is_periodic = world_.periodic,

@@ -273,6 +273,14 @@ def test_made_archive_fits_the_robots_of_its_configuration(program: Compile, tmp
     assert Path("made.flash").read_bytes() == Path("own.flash").read_bytes() == Path("left.flash").read_bytes()
 
 
+def test_make_asks_for_a_run_where_only_the_simulator_knows_a_type(capsys: pytest.CaptureFixture[str]) -> None:
+    robots = {"robots": {"type": "pogobot", "nb": 2}}
+    assert flash("make", "y.flash", "-c", configuration({**robots, "posts": {"type": "beacon", "nb": 1}})) == 2
+    told = capsys.readouterr().err
+    assert "c.yaml: only the simulator knows what a beacon has; run the program with --set simulation_time=0" in told
+    assert not Path("y.flash").exists()
+
+
 def test_make_replaces_an_archive_as_a_whole(capsys: pytest.CaptureFixture[str]) -> None:
     own = ("-c", configuration({"robots": {"type": "pogobot", "nb": 2}}), "--force", "--json")
     assert flash("make", "x.flash", *own) == 0

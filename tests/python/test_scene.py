@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pogosim.scene import Lamp, light_levels, ray_names, read_kinds, read_lamps
+from pogosim.object_facts import entries_in
+from pogosim.scene import Lamp, kinds_in, lamps_in, light_levels, unseen_light
 from pogosim.shapes import Shape, shape_of
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
@@ -14,7 +15,7 @@ HOLE = np.array([[400.0, 400.0], [600.0, 400.0], [600.0, 600.0], [400.0, 600.0]]
 
 def level(settings: dict[str, Any], x: float, y: float, time_s: float = 10.0) -> float:
     """Light of one static_light at a point of a square with a hole."""
-    lamps = read_lamps({"objects": {"lamp": {"type": "static_light", "value": 1000, **settings}}})
+    lamps = lamps_in(entries_in({"objects": {"lamp": {"type": "static_light", "value": 1000, **settings}}}))
     return float(light_levels(lamps, [SQUARE, HOLE], np.array([[x, y]]), time_s)[0])
 
 
@@ -60,13 +61,13 @@ def test_only_maps_are_objects_and_lamps_are_none() -> None:
         "ray": {"type": "rotating_ray_of_light"},
         "text": "not a map",
     }
-    found = {kind.category: kind for kind in read_kinds({"objects": objects})}
+    found = {kind.category: kind for kind in kinds_in(entries_in({"objects": objects}))}
     assert list(found) == ["walls", "half"]
-    assert found["walls"].type == "pogowall"
+    assert found["walls"].is_wall
     assert found["walls"].position_mm == (3.0, 4.0)
     assert found["half"].position_mm is None
-    assert ray_names({"objects": objects}) == ["ray"]
-    assert read_kinds({}) == read_kinds({"objects": [1]}) == []
+    assert unseen_light(entries_in({"objects": objects})) == ["beams of ray"]
+    assert entries_in({}) == entries_in({"objects": [1]}) == []
 
 
 def test_membrane_is_as_thick_as_its_dots_or_its_segments() -> None:
@@ -76,7 +77,7 @@ def test_membrane_is_as_thick_as_its_dots_or_its_segments() -> None:
         "thick": {"type": "rectmembrane", "rect_thickness": 12},
         "robots": {"type": "pogobot"},
     }
-    found = read_kinds({"objects": objects})
+    found = kinds_in(entries_in({"objects": objects}))
     assert [own.half_thickness_mm for own in found] == [7.0, 3.5, 6.0, 0.0]
 
 
@@ -134,7 +135,7 @@ def test_lamps_add_up_to_the_brightest_a_sensor_tells() -> None:
 def test_orbiting_lamp_is_where_it_is_by_then() -> None:
     settings = {"type": "orbiting_static_light", "geometry": "disk", "radius": 50, "center_x": 500, "y": 400}
     orbit = {"orbit_radius": 300, "orbit_angular_speed": math.pi, "orbit_phase": math.pi / 2}
-    (lamp,) = read_lamps({"objects": {"lamp": {**settings, **orbit}}})
+    (lamp,) = lamps_in(entries_in({"objects": {"lamp": {**settings, **orbit}}}))
     assert lamp.centre_at(0.0) == pytest.approx([500, 700])
     assert lamp.centre_at(0.5) == pytest.approx([200, 400])  # clockwise on the screen
     assert Lamp(Shape(), (1.0, 2.0)).centre_at(7.0).tolist() == [1.0, 2.0]

@@ -14,8 +14,9 @@ import pytest
 import yaml
 from pogosim import Simulation
 from pogosim.film.replay import category_data
+from pogosim.object_facts import entries_in
 from pogosim.picture.swarm import KIND, read_recording
-from pogosim.scene import read_kinds
+from pogosim.scene import kinds_in
 from running import ROOT, example, run
 
 TRAY: dict[str, Any] = {
@@ -146,7 +147,7 @@ def test_overlaps_are_those_of_the_outline_and_not_of_the_disk_around_it(tmp_pat
 
 def test_pictures_and_replays_know_the_outline() -> None:
     configuration = yaml.safe_load((ROOT / "conf/shapes.yaml").read_text())
-    kinds = {kind.category: kind for kind in read_kinds(configuration)}
+    kinds = {kind.category: kind for kind in kinds_in(entries_in(configuration))}
     outline = np.array(category_data("trays", kinds["trays"])["outline"])
     assert len(outline) == 8
     assert np.ptp(outline, axis=0) == pytest.approx([96.0, 160.0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from pogosim.analysis.arena import Floats
 from pogosim.arguments import number
 from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
+from pogosim.object_facts import entry_of, facts_of
 
 Setting = Callable[[str], Any]
 Values = tuple[float, float, float]  # radius in mm, reach in mm, and top speed in mm/s, NaN if unknown
@@ -66,26 +67,31 @@ class Sizes:
         return float(values[0])
 
 
-def sizes_of(category: npt.NDArray[np.object_], setting: Setting) -> Sizes:
+def sizes_of(category: npt.NDArray[np.object_], setting: Setting, told: Any = None) -> Sizes:
     """Return the sizes of robots; of pogobots where nothing is said.
 
     Args:
         category: Category of each robot, shape (N,).
         setting: Value of a configuration entry, by its dotted path; None if there is none.
+        told: The metadata `objects`; None: there are none.
     """
     names = list(dict.fromkeys(map(str, category)))
-    known = {name: sizes_in(name, setting) for name in names}
+    known = {name: sizes_in(name, setting, told) for name in names}
     values = np.array([fastest_of(known[str(name)]) for name in category], dtype=float).reshape(len(category), 3)
     lists = "; ".join(filter(None, map(differences, known, known.values())))
     return Sizes(category, values[:, 0], values[:, 1], values[:, 2], lists)
 
 
-def sizes_in(category: str, setting: Setting) -> list[Values]:
+def sizes_in(category: str, setting: Setting, told: Any) -> list[Values]:
     """Return the values of the entry of a category, or of each entry if it is a list."""
-    found: list[Values] = []
-    while entry := entry_of(category, len(found), setting):
-        found.append(entry)
-    return found or [values_at(f"objects.{category}", setting)]
+    path = f"objects.{category}"
+    paths: list[str] = []
+    while any(setting(f"{path}.{len(paths)}.{key}") is not None for key in ("type", "nb")):
+        paths.append(f"{path}.{len(paths)}")
+    paths = paths or [path]
+    return [
+        values_at(own, setting, facts) for own, facts in zip(paths, facts_of(told, category, len(paths)), strict=True)
+    ]
 
 
 def fastest_of(entries: list[Values]) -> Values:
@@ -99,15 +105,12 @@ def differences(category: str, entries: list[Values]) -> str:
     return f"the entries of objects.{category} differ: {', '.join(said)}" if len(said) > 1 else ""
 
 
-def entry_of(category: str, place: int, setting: Setting) -> Values | None:
-    """Return the values of an entry of a category that is a list of entries; None if there is no such entry."""
-    path = f"objects.{category}.{place}"
-    return None if setting(f"{path}.type") is None and setting(f"{path}.nb") is None else values_at(path, setting)
-
-
-def values_at(path: str, setting: Setting) -> Values:
-    """Return the values of the entry at a path."""
+def values_at(path: str, setting: Setting, told: Mapping[str, Any] | None) -> Values:
+    """Return the values of the entry at a path, of which the metadata say what is told."""
+    keys = ("type", "communication_radius", "max_linear_speed")
+    given = {key: value for key in keys if (value := setting(f"{path}.{key}")) is not None}
+    # Where nothing says what they are, their speed is unknown.
+    own = entry_of(path, given if "type" in given else {"type": "active_object", **given}, told)
     radius_mm = number(setting(f"{path}.radius"), POGOBOT_RADIUS_MM)
-    range_mm = number(setting(f"{path}.communication_radius"), COMMUNICATION_RADIUS_MM)
-    speed = number(setting(f"{path}.max_linear_speed"), math.nan) if setting(f"{path}.type") == "pogobot" else math.nan
-    return radius_mm, range_mm + 2.0 * radius_mm, speed if math.isfinite(speed) else math.nan
+    range_mm = own.infrared_range_mm if "robot" in own.has else COMMUNICATION_RADIUS_MM
+    return radius_mm, range_mm + 2.0 * radius_mm, own.top_speed_mm_s

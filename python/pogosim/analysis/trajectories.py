@@ -25,10 +25,9 @@ from pogosim.batch.paths import get_by_dotted_path
 from pogosim.errors import AnalysisError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
+from pogosim.object_facts import OBJECTS, entries_of
 from pogosim.periodic import steps_of
 from pogosim.run_columns import is_one_run, named_columns
-from pogosim.scene import read_kinds
-from pogosim.several_files import configuration_of
 from pogosim.utils import polygons_of
 
 # With more cells per row, times and robots do not belong together.
@@ -37,7 +36,6 @@ MAX_CELLS_PER_ROW = 1000
 given = Arguments(AnalysisError)
 
 OBJECT = ("robot_category", "robot_id")
-MOVING = ("pogobot", "pogobject")  # types of objects that run a program and have a pose of their own
 
 
 @dataclass(frozen=True)
@@ -211,8 +209,7 @@ def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str |
         return rows[names == category]
     if "robots" in there:
         return rows[names == "robots"]
-    types = {own.category: own.type for own in read_kinds(configuration_of(dict(metadata)))}
-    active = [name for name in there if types.get(name) in MOVING]
+    active = [own.category for own in entries_of(metadata) if own.is_robot and own.category in there]
     return rows[names.isin(active)] if active else rows
 
 
@@ -281,7 +278,7 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         heading_rad=heading,
         row=row,
         rows=rows,
-        sizes=sizes_of(robots["robot_category"].to_numpy(dtype=object), setting),
+        sizes=sizes_of(robots["robot_category"].to_numpy(dtype=object), setting, metadata.get(OBJECTS)),
     )
 
 

@@ -14,8 +14,8 @@ from pogosim.batch.errors import BatchError
 from pogosim.batch.parts import Part
 from pogosim.batch.run_files import without_outputs
 from pogosim.run_columns import NUMBERS
-from pogosim.table_metadata import parse_configuration
-from pogosim.varied import MISSING, in_common
+from pogosim.table_metadata import parse_configuration, parse_facts
+from pogosim.varied import MISSING, OBJECTS, facts_in_common, in_common
 from pogosim.yaml_1_2 import WRONG_VALUES, dump_yaml, parse_yaml, problem_of
 
 RESOLVED = "resolved_configuration"
@@ -69,7 +69,7 @@ def metadata_of(parts: Sequence[Part], text: str, earlier: Earlier | None) -> di
     """Return the metadata of a file of results.
 
     They are what all runs have in common, with `configuration`, the configuration with all its options, and
-    `resolved_configuration`, the entries that are the same in all runs. `summary` adds what differs.
+    `resolved_configuration` and `objects`, the entries that are the same in all runs. `summary` adds what differs.
     """
     before = [] if earlier is None else [[earlier.metadata]]
     of_parts = [*before, *([run.metadata for run in part.runs] for part in parts if part.runs)]
@@ -83,6 +83,8 @@ def metadata_of(parts: Sequence[Part], text: str, earlier: Earlier | None) -> di
     }
     metadata = {key.decode(errors="replace"): value for key, value in common.items()}
     metadata["configuration"] = text.encode()
+    if OBJECTS not in metadata and (facts := facts_in_common([facts_in(part[0]) for part in of_parts])):
+        metadata[OBJECTS] = json.dumps(facts).encode()
     shared = in_common([configuration_in(part[0]) for part in of_parts])
     if shared not in (MISSING, {}):
         metadata[RESOLVED] = dump_yaml(shared).encode()
@@ -93,6 +95,11 @@ def configuration_in(metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return the configuration with all defaults of a run, without what only that run has."""
     entries = parse_configuration(metadata.get(RESOLVED.encode(), b"").decode(errors="replace"))
     return {key: value for key, value in without_outputs(entries).items() if key != "seed"}
+
+
+def facts_in(metadata: dict[bytes, bytes]) -> Any:
+    """Return what the metadata of a run say of its objects; None if they do not."""
+    return parse_facts(metadata.get(OBJECTS.encode(), b"null").decode(errors="replace"))
 
 
 def summary(parts: Sequence[Part]) -> list[dict[str, Any]]:

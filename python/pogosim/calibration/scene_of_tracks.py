@@ -16,7 +16,8 @@ from pogosim.calibration.simulation import rows_of, trial
 from pogosim.calibration.tracks import Floats, Tracks
 from pogosim.errors import CalibrationError
 from pogosim.geometry.arena_file import Outline
-from pogosim.scene import read_periodic, type_of
+from pogosim.object_facts import type_of
+from pogosim.scene import read_periodic
 from pogosim.several_files import configuration_of
 
 CLOSE_MM = 10.0  # a start so far beyond where a robot can be is an error of the tracker

@@ -212,19 +212,25 @@ def robots_of(configuration: str) -> list[tuple[str, int]]:
     """Return category and id of all robots and other objects with a program, as the simulator numbers them."""
     from pogosim.batch.configuration import Configuration
     from pogosim.object_categories import UnknownCategoriesError, ids_of
-    from pogosim.scene import RAYS, SPOTS, entries, read_periodic, type_of
+    from pogosim.object_facts import TYPES, entries_in, entry_of, type_of
+    from pogosim.scene import bodies_of, read_periodic
 
     tree = Configuration(configuration).of_one_run()
-    bodies = [(name, own) for name, own in entries(tree) if type_of(own) not in SPOTS + RAYS]
-    bodies = [(name, {**own, "nb": own.get("nb", len(own.get("poses") or [0]))}) for name, own in bodies]
+    entries = entries_in(tree)
+    bodies = [
+        entry_of(own.category, {**own.settings, "nb": own.settings.get("nb", len(own.settings.get("poses") or [0]))})
+        for own in bodies_of(entries)
+    ]
+    instead = "run the program with --set simulation_time=0 --set flash_state.output_file=FILE instead"
+    if strange := [type_of(own.settings) for own in entries if type_of(own.settings) not in TYPES]:
+        raise FlashError(f"{configuration}: only the simulator knows what a {strange[0]} has; {instead}")
     try:
         ids = ids_of(bodies, read_periodic(tree))
     except UnknownCategoriesError:
         raise FlashError(
-            f"{configuration} does not say how many objects of each category there are; run the program with "
-            "--set simulation_time=0 --set flash_state.output_file=FILE instead"
+            f"{configuration} does not say how many objects of each category there are; {instead}"
         ) from None
-    with_program = [type_of(own) != "passive_object" for _, own in bodies]
+    with_program = ["robot" in own.has for own in bodies]
     robots = [
         (name, identifier)
         for (name, first, last), runs in zip(ids, with_program, strict=True)

@@ -21,7 +21,7 @@ from pogosim.picture.layers import GLOWS, HINGE_PT, LINK_EDGE_PT, LINK_PT, PIN_P
 from pogosim.picture.links import box_of, link_segments, proximity_pairs
 from pogosim.picture.palette import DARK_LED, EDGE, LINK, PAPER, tension_colours
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording
-from pogosim.scene import MEMBRANES, TALKERS, Kind
+from pogosim.scene import Kind
 from pogosim.shapes import Floats
 
 Numbers = npt.NDArray[np.int64]
@@ -73,10 +73,10 @@ class Moving:
         numbers, self.kind = np.unique(rows[KIND].to_numpy(), return_inverse=True)
         self.kinds = [swarm.kinds[number] for number in numbers]
         of_each = {
-            "talks": [own.type in TALKERS for own in self.kinds],
+            "talks": [own.talks for own in self.kinds],
             "range": [own.communication_radius_mm for own in self.kinds],
             "radius": [own.shape.bounding_radius_mm for own in self.kinds],
-            "membrane": [own.type in MEMBRANES for own in self.kinds],
+            "membrane": [own.is_membrane for own in self.kinds],
         }
         self.of_kind = {name: np.array(values) for name, values in of_each.items()}
         if tail_s:
@@ -116,10 +116,10 @@ class Moving:
         which, place = seen_places(place, GLOWS[0][0] * self.of_kind["radius"][self.kind[now]], self.box)
         now, angle = now[which], angle[which]
         kinds = [(own, np.flatnonzero(self.kind[now] == i)) for i, own in enumerate(self.kinds)]
-        shown = [(own, which) for own, which in kinds if len(which) and own.type not in MEMBRANES]
+        shown = [(own, which) for own, which in kinds if len(which) and not own.is_membrane]
         if self.glows:
             for own, which in shown:
-                if own.type != "passive_object":
+                if own.runs_program:
                     self.draw_glows(brush, own, place[which], angle[which], self.colours[now[which]])
         if dots is not None:
             brush.finish()

@@ -28,7 +28,7 @@ from pogosim.picture.links import box_of
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
-from pogosim.scene import MEMBRANES, TALKERS, Kind
+from pogosim.scene import Kind
 from pogosim.shapes import Shape
 
 FOLDER = Path(__file__).parent
@@ -174,10 +174,10 @@ def category_data(name: str, kind: Kind) -> dict[str, Any]:
         "radius": shape.bounding_radius_mm,
         "reach": shape.reach_mm,
         "outline": outline_of(shape),
-        "talks": kind.type in TALKERS,
+        "talks": kind.talks,
         "range": kind.communication_radius_mm,
-        "passive": kind.type == "passive_object",
-        "membrane": kind.type in MEMBRANES,
+        "passive": not kind.runs_program,
+        "membrane": kind.is_membrane,
     }
 
 
@@ -249,7 +249,7 @@ def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
     swarm = recording.last
     walls = []
     for number, kind in enumerate(swarm.kinds):
-        if kind.type != "pogowall":
+        if not kind.is_wall:
             continue
         own = recording.walls[recording.walls[KIND] == number]
         changes: list[list[Any]] = []
@@ -334,7 +334,7 @@ def membrane_tables(
                 "first": int(rows.index[0]),
                 "count": len(rows),
                 "half_thickness": kind.half_thickness_mm,
-                "segments": kind.type == "rectmembrane",
+                "segments": kind.segments,
             }
         )
     times = [float(f"{time:.12g}") for time in timeline.times_s]

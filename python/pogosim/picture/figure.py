@@ -58,7 +58,7 @@ def draw_scale_bar(axes: Axes, low: Floats, high: Floats) -> None:
 
 def notes(swarm: Swarm) -> str:
     """Return what the picture does not show, though it was there."""
-    unseen = [f"beams of {name}" for name in swarm.rays] + [f"shadows of {name}" for name in swarm.shadows]
+    unseen = list(swarm.unseen_light)
     marked = layers.marked_membranes(swarm)["robot_category"].unique()
     unseen += [f"the shape of {name} (serialize_dot_pose)" for name in marked]
     return f"not drawn: {', '.join(unseen)}" if unseen else ""

@@ -27,8 +27,8 @@ from pogosim.picture.palette import (
     WALL,
     tension_colours,
 )
-from pogosim.picture.swarm import KIND, OBJECT, RGB, Swarm, is_of_type
-from pogosim.scene import MEMBRANES, Kind, bounds, floor_outline, light_levels
+from pogosim.picture.swarm import KIND, OBJECT, RGB, Swarm, rows_of_kinds
+from pogosim.scene import Kind, bounds, floor_outline, light_levels
 from pogosim.shapes import Floats, Shape
 
 # Long files are drawn from that many snapshots at most: more cannot be told apart.
@@ -122,7 +122,7 @@ def draw_trails(axes: Axes, swarm: Swarm, floor: PathPatch, tail_s: float, max_s
 
 def is_membrane(swarm: Swarm) -> npt.NDArray[np.bool_]:
     """Tell which rows are those of membranes, shape (rows,)."""
-    return is_of_type(swarm.rows, swarm.kinds, MEMBRANES)
+    return rows_of_kinds(swarm.rows, [kind.is_membrane for kind in swarm.kinds])
 
 
 def placed(outline: Floats, position: Floats, angle: Floats) -> Floats:
@@ -191,7 +191,7 @@ def wall_colour(colour: Floats | None) -> Floats:
 def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
     """Draw walls that run programs as lines that glow in the colour of their LED."""
     for number, wall in enumerate(swarm.kinds):
-        if wall.type != "pogowall":
+        if not wall.is_wall:
             continue
         colour = wall_colour(swarm.wall_colours.get(number))
         closed = [np.vstack([line, line[:1]]) for line in wall_lines(wall, swarm.polygons)]
@@ -214,7 +214,7 @@ def draw_membranes(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:
         lines = list(ring + (places - middle)[:, None])
         colour = dots[RGB].to_numpy()[0]
         width = 2.0 * half_thickness * points_per_mm(axes)
-        segments = kind.type == "rectmembrane"
+        segments = kind.segments
         style = {"joinstyle": "round", "capstyle": "round"}
         outline = LineCollection(
             lines, colors=[(*colour, 0.45)], linewidths=width if segments else width / 3, zorder=4, **style
@@ -264,7 +264,7 @@ def draw_alike(axes: Axes, swarm: Swarm, kind: Kind, rows: pd.DataFrame, floor: 
         return collection
 
     # A lit LED lights up the floor around.
-    lit = (colours != DARK_LED).any(axis=1) & (kind.type != "passive_object")
+    lit = (colours != DARK_LED).any(axis=1) & kind.runs_program
     for scale, alpha in GLOWS if swarm.colouring is None else ():
         glow = bodies(scale, facecolors=np.column_stack([colours, alpha * lit]), zorder=3)
         glow.set_clip_path(floor)

@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box, lines_between
 from pogosim.picture.swarm import KIND, OBJECT, Swarm
-from pogosim.scene import TALKERS, bounds
+from pogosim.scene import bounds
 from pogosim.shapes import Floats
 
 Pairs = npt.NDArray[np.int64]
@@ -78,9 +78,9 @@ def links_at_end(swarm: Swarm) -> Floats:
 def links_between(swarm: Swarm, rows: pd.DataFrame) -> Floats:
     """Lines of the links between the objects of some rows, one for each, shape (k, 2, 2), mm."""
     own = [swarm.kinds[number] for number in rows[KIND]]
-    talks = np.array([category.type in TALKERS for category in own], dtype=bool)
+    talks = np.array([category.talks for category in own], dtype=bool)
     position = rows[["x", "y"]].to_numpy(dtype=float)[talks]
-    bodies = [category for category in own if category.type in TALKERS]
+    bodies = [category for category in own if category.talks]
     pairs = proximity_pairs(
         position,
         np.array([category.communication_radius_mm for category in bodies]),

@@ -16,6 +16,7 @@ from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.errors import PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, kinds_of, last_kinds, with_categories
+from pogosim.object_facts import entries_of
 from pogosim.outputs import PathLike
 from pogosim.picture.body_links import BodyLinks, read_body_links
 from pogosim.picture.colouring import Colouring, checked_column, colouring_of, legend_of_categories
@@ -27,12 +28,11 @@ from pogosim.scene import (
     Kind,
     Lamp,
     bounds,
-    ray_names,
-    read_kinds,
-    read_lamps,
+    kinds_in,
+    lamps_in,
     read_periodic,
-    read_top_speed,
-    shadow_names,
+    top_speed,
+    unseen_light,
 )
 from pogosim.several_files import configuration_of
 from pogosim.shapes import Floats, Shape
@@ -40,7 +40,7 @@ from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
 
 # Robots of the real swarm, where a file does not say.
-UNKNOWN = Kind("robots", "pogobot", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM)
+UNKNOWN = Kind("robots", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM)
 
 # Columns that are added to those of the file. No program's column has such a name: it would end at its first character.
 OBJECT = OBJECT_COLUMN
@@ -58,8 +58,7 @@ class Swarm:
     polygons: list[Floats]  # each of shape (vertices, 2), at least one; the outer wall first
     kinds: list[Kind]  # of the entries of the configuration; the last one is UNKNOWN
     lamps: list[Lamp]
-    rays: list[str]  # categories of lighthouses
-    shadows: list[str]  # categories of lamps that cast shadows
+    unseen_light: list[str]  # what is not drawn of lamps, "beams of tower"
     end_s: float
     is_periodic: bool = False
     top_speed_mm_s: float | None = None  # of the robots that drive; None: the file does not say
@@ -169,18 +168,19 @@ def read_recording(
     if color_by not in (None, SPEED, "led_rgb"):
         checked_column(rows, str(color_by))
     configuration = configuration_of(metadata)
-    kinds = read_kinds(configuration)
+    entries = entries_of(metadata)
+    kinds = kinds_in(entries)
     rows = with_categories(rows, metadata)
-    rows = completed(with_defaults(rows.assign(**{KIND: kind_numbers(rows, configuration, kinds)})))
+    rows = completed(with_defaults(rows.assign(**{KIND: kind_numbers(rows, metadata, kinds)})))
     kinds.append(UNKNOWN)
     is_periodic = read_periodic(configuration)
-    top_speed_mm_s = read_top_speed(configuration)
+    top_speed_mm_s = top_speed(entries)
     if color_by == SPEED:
         rows = with_speed(rows, np.ptp(polygons[0], axis=0) if is_periodic and polygons else None, top_speed_mm_s)
     rows, colouring = coloured(rows, kinds, color_by)
 
     # In files of earlier versions, walls have no pose.
-    is_wall = is_of_type(rows, kinds, ("pogowall",))
+    is_wall = rows_of_kinds(rows, [kind.is_wall for kind in kinds])
     has_pose = np.isfinite(rows["time"]) & np.isfinite(rows["x"]) & np.isfinite(rows["y"]) & ~is_wall
     is_part = rows["subpart_id"] >= 0
     objects = rows[has_pose & ~is_part].reset_index(drop=True)
@@ -192,9 +192,8 @@ def read_recording(
         wall_colours={},
         polygons=polygons or [box_around(rows[has_pose], kinds)],
         kinds=kinds,
-        lamps=read_lamps(configuration),
-        rays=ray_names(configuration),
-        shadows=shadow_names(configuration),
+        lamps=lamps_in(entries),
+        unseen_light=unseen_light(entries),
         end_s=float(objects["time"].iloc[-1]),
         is_periodic=is_periodic,
         top_speed_mm_s=top_speed_mm_s,
@@ -224,12 +223,13 @@ def completed(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(**{OBJECT: rows.groupby(["robot_category", "robot_id"], sort=True).ngroup()})
 
 
-def kind_numbers(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
+def kind_numbers(rows: pd.DataFrame, metadata: dict[str, Any], kinds: list[Kind]) -> npt.NDArray[np.int64]:
     """Return the place in Swarm.kinds of each row; of an entry of its category where nothing says of which."""
     try:
-        return kinds_of(rows, configuration, kinds)
+        return kinds_of(rows, metadata, kinds)
     except UnknownCategoriesError:
-        lists = sorted({kind.category for kind in kinds if isinstance(configuration["objects"][kind.category], list)})
+        objects = configuration_of(metadata)["objects"]
+        lists = sorted({kind.category for kind in kinds if isinstance(objects[kind.category], list)})
         warnings.warn(
             f"nothing says which objects of {', '.join(lists)} are of which entry of the list (nb, robot_id), so all "
             "are drawn as those of the last one",
@@ -239,10 +239,9 @@ def kind_numbers(rows: pd.DataFrame, configuration: dict[str, Any], kinds: list[
         return last_kinds(rows, kinds)
 
 
-def is_of_type(rows: pd.DataFrame, kinds: list[Kind], types: Sequence[str]) -> npt.NDArray[np.bool_]:
-    """Tell which rows are those of objects of some types, shape (rows,)."""
-    is_wanted = np.array([kind.type in types for kind in kinds])
-    return np.asarray(is_wanted[rows[KIND].to_numpy()])
+def rows_of_kinds(rows: pd.DataFrame, is_wanted: Sequence[bool]) -> npt.NDArray[np.bool_]:
+    """Tell which rows are those of objects of some kinds, shape (rows,), from whether each kind is wanted."""
+    return np.asarray(np.array(is_wanted, dtype=bool)[rows[KIND].to_numpy()])
 
 
 def coloured(
@@ -255,7 +254,7 @@ def coloured(
         colours = colouring.colours(rows[str(color_by)])
     elif "led_rgb" in rows:
         colours = led_colours(rows["led_rgb"].to_numpy())
-        colours[is_of_type(rows, kinds, ("passive_object",))] = NO_LED
+        colours[~rows_of_kinds(rows, [kind.runs_program for kind in kinds])] = NO_LED
     elif color_by == "led_rgb":
         raise PictureError("it has no column led_rgb of integers (data_logger_led: true writes it)")
     else:
