@@ -362,7 +362,13 @@ def test_options_in_lists_are_combined_by_every_subcommand(tmp_path: Path) -> No
         (["rum"], 2, "there is no subcommand 'rum'; did you mean 'run'?"),
         (["x", "-c", "many.yaml"], 2, "there is no subcommand 'x'; see pogobatch help"),
         (["help", "rum"], 2, "there is no subcommand 'rum'; did you mean 'run'?"),
-        (["run"], 2, "the following arguments are required: -S/--simulator-binary, -c/--config"),
+        (["run"], 2, "the following arguments are required: -c/--config"),
+        (
+            ["run", "-c", "many.yaml"],
+            2,
+            "the following arguments are required: -S/--simulator-binary; nothing else drives the robots of "
+            "objects.robots (brain)",
+        ),
         (["task", "-c", "many.yaml"], 2, "the following arguments are required"),
         (["merge"], 2, "the following arguments are required: FOLDER"),
         (["plan", "--show"], 2, "required"),
@@ -380,6 +386,28 @@ def test_what_is_no_command_is_said(words: list[str], code: int, said: str, tmp_
     result = run_main(tmp_path, words)
     assert (result.code, result.output) == (code, "")
     assert said in result.errors
+
+
+@pytest.mark.parametrize("words", [[], ["run"], ["task", "--seed", "3"]])
+def test_scripts_need_no_program(words: list[str], tmp_path: Path) -> None:
+    """Nor do categories without robots."""
+    script = {"script": [{"time_s": 0, "motors": [500, 500, 0]}]}
+    boxes = {"type": "passive_object", "nb": 1, "geometry": "disk", "radius": 10}
+    write_options(tmp_path, {"objects.robots.brain": script, "objects.boxes": boxes})
+    temporary = [] if "task" in words else ["-t", "tmp"]
+    result = run_main(tmp_path, [*words, "-c", "many.yaml", "-o", "results", *temporary])
+    assert result.code == 0, result.errors
+    (data,) = (tmp_path / "results").rglob("*.feather")
+    rows = pd.read_feather(data)
+    robots = rows[rows["robot_category"] == "robots"]
+    assert (robots.groupby("robot_id")["x"].nunique() > 5).all()
+
+
+def test_missing_program_is_the_first_thing_said(tmp_path: Path) -> None:
+    write_options(tmp_path, {"objects.robots.brain": "program"})
+    result = run_main(tmp_path, ["-c", "many.yaml", "-o", "results", "-t", "tmp"])
+    assert (result.code, result.output) == (1, "")
+    assert "-S/--simulator-binary; nothing else drives the robots of objects.robots (brain)" in result.errors
 
 
 def test_help_lists_subcommands_and_their_options(tmp_path: Path) -> None:

@@ -8,17 +8,20 @@ from collections.abc import Sequence
 
 import pogosim
 from pogosim.batch.ending import Report, RunsFailedError, catch_signals, ended, start_logging
-from pogosim.batch.errors import tell
+from pogosim.batch.errors import NoProgramError, tell
 from pogosim.batch.run_options import (
     DONE,
     NO_SUCH_OUTPUT,
+    PROGRAM_HELP,
     WRONG,
     Parser,
     add_choice_options,
     add_run_options,
+    give_program,
     runner_of,
 )
 from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown_subcommand
+from pogosim.errors import ToolError
 from pogosim.lines import say, say_error
 
 EPILOG = """Finished runs of a batch that was interrupted are kept in the folder for temporary files: the same command
@@ -37,7 +40,7 @@ def parser(prog: str) -> Parser:
     )
     options.missing = NO_SUCH_OUTPUT
     add = options.add_argument
-    add("-S", "--simulator-binary", metavar="PROGRAM", help="program compiled for Pogosim")
+    add("-S", "--simulator-binary", metavar="PROGRAM", help=PROGRAM_HELP)
     add("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
     add_choice_options(options)
     add_run_options(options)
@@ -53,6 +56,8 @@ def run_batch(arguments: argparse.Namespace) -> Report:
         BatchError: It cannot be done.
         RunsFailedError: Runs failed.
     """
+    if not arguments.list_outputs:
+        give_program(arguments)
     runner = runner_of(arguments, is_campaign=False)
     if arguments.list_outputs:
         outputs = runner.list_outputs()
@@ -84,8 +89,13 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
     else:
         options = parser(prog)
         parsed = options.parse_args(words)
-        if not parsed.simulator_binary and not parsed.list_outputs:
-            options.error("the following arguments are required: -S/--simulator-binary")
+        if not parsed.list_outputs:
+            try:
+                give_program(parsed)
+            except NoProgramError as error:
+                options.error(str(error))
+            except ToolError:
+                pass  # run_batch() says it
         do = run_batch
     start_logging(getattr(parsed, "verbose", False), f"{prog}: %(message)s")
     catch_signals()

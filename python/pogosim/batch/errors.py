@@ -24,6 +24,10 @@ class BatchError(ToolError):
 given = Arguments(BatchError)
 
 
+class NoProgramError(BatchError):
+    """No program is named, and a category needs one."""
+
+
 class NothingSelectedError(BatchError):
     """No combination has the output that was asked for."""
 

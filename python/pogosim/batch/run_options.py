@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING, NoReturn
 
 from pogosim.arguments import is_text
-from pogosim.batch.errors import BatchError, at_least
+from pogosim.batch.errors import BatchError, NoProgramError, at_least
 from pogosim.batch.seeds import seeds_between
 from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
 from pogosim.lines import say_error
@@ -97,6 +97,9 @@ def add_retry_options(options: argparse.ArgumentParser) -> None:
     )
 
 
+PROGRAM_HELP = "program compiled for Pogosim; needed if a category has none of its own (brain: a firmware or a script)"
+
+
 def check_names(arguments: argparse.Namespace) -> None:
     """Check names of files and folders, which stand in configurations and messages.
 
@@ -108,6 +111,28 @@ def check_names(arguments: argparse.Namespace) -> None:
         if not is_text(value) or "\n" in value:
             flag = f"--{name.replace('_', '-')}"
             raise BatchError(f"{flag}: the name {value!a} has a line break or bytes that are not UTF-8; rename it")
+
+
+def give_program(arguments: argparse.Namespace) -> None:
+    """If no program is named and no category needs one, name what runs configurations without a program.
+
+    Raises:
+        NoProgramError: A category needs a program.
+        BatchError: The configuration cannot be read.
+    """
+    if arguments.simulator_binary is not None:
+        return
+    from pogosim.batch.configuration import Configuration
+    from pogosim.installation import find_installation
+    from pogosim.object_facts import entries_in
+
+    for own in entries_in(Configuration(arguments.config).of_one_run()):
+        if "robot" in own.has and str(own.settings.get("brain", "program")) in ("program", "host", "None"):
+            raise NoProgramError(
+                "the following arguments are required: -S/--simulator-binary; nothing else drives the robots of "
+                f"objects.{own.category} (brain)"
+            )
+    arguments.simulator_binary = str(find_installation().without_program)
 
 
 def asked_seeds(arguments: argparse.Namespace) -> Sequence[int] | str | None:

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pogosim.batch.ending import Report, RunsFailedError
 from pogosim.batch.errors import BatchError, tell
 from pogosim.batch.identity import find_program
-from pogosim.batch.run_options import Parser, add_choice_options, add_run_options, check_names, runner_of
+from pogosim.batch.run_options import (
+    PROGRAM_HELP,
+    Parser,
+    add_choice_options,
+    add_run_options,
+    check_names,
+    give_program,
+    runner_of,
+)
 from pogosim.lines import counted
 from pogosim.nearest_name import listed, unknown
 
@@ -39,7 +47,7 @@ class Subcommand(NamedTuple):
 
 def add_plan_options(options: Parser) -> None:
     """Add the options of `plan`: those of `run`, so that one word makes a plan of a batch, and its own."""
-    add_campaign_options(options, needs_program=False)
+    add_campaign_options(options)
     options.add_argument("--show-tasks", action="store_true", help="list all runs")
 
 
@@ -98,7 +106,7 @@ def add_task_options(options: Parser) -> None:
     """Add the options of `task`."""
     add = options.add_argument
     add("-c", "--config", required=True, help="configuration (YAML); options have their default_option")
-    add("-S", "--simulator-binary", metavar="PROGRAM", required=True, help="program compiled for Pogosim")
+    add("-S", "--simulator-binary", metavar="PROGRAM", help=PROGRAM_HELP)
     add("--seed", type=int, required=True, metavar="N", help="seed of the run")
     add("-o", "--output-dir", metavar="FOLDER", required=True, help="folder of the run")
     add("--run-index", type=int, default=0, metavar="N", help="its number, for the column run (%(default)s)")
@@ -112,6 +120,7 @@ def add_task_options(options: Parser) -> None:
 def task(arguments: argparse.Namespace) -> Report:
     """Do one run in a folder of its own."""
     check_names(arguments)
+    give_program(arguments)
     from pogosim.batch.single_task import TaskError, execute_task  # takes a while
 
     try:
@@ -135,10 +144,10 @@ def task(arguments: argparse.Namespace) -> Report:
 # ---- run ----
 
 
-def add_campaign_options(options: Parser, needs_program: bool = True) -> None:
+def add_campaign_options(options: Parser) -> None:
     """Add the options of `run`."""
     add = options.add_argument
-    add("-S", "--simulator-binary", metavar="PROGRAM", required=needs_program, help="program compiled for Pogosim")
+    add("-S", "--simulator-binary", metavar="PROGRAM", help=PROGRAM_HELP)
     add(
         *("-j", "--jobs", "--workers"),
         dest="workers",
@@ -188,6 +197,8 @@ def run_part(arguments: argparse.Namespace) -> Report:
 
 def run(arguments: argparse.Namespace) -> Report:
     """Do a batch whose results say the seeds, and which writes a manifest."""
+    check_names(arguments)
+    give_program(arguments)
     if arguments.part is not None:
         return run_part(arguments)
     runner = runner_of(arguments, is_campaign=True)
