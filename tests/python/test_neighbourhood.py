@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pogosim.analysis import snapshots
 from pogosim.analysis.neighbourhood import (
     cluster_sizes,
     clusters,
@@ -133,3 +134,27 @@ def test_one_robot_has_no_neighbour() -> None:
     assert clusters(run).tolist() == [[0]]
     assert np.isnan(nearest_distances(run)).all()
     assert np.isnan(fano_factor(degrees(run))).all()
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_blocks_of_times_make_no_difference(periodic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = run_at(uniform(30, 200.0, times=7), 200.0, periodic, missing=4)
+    whole = degrees(run, 60.0), clusters(run, 60.0), nearest_distances(run, 4, 90.0)
+    monkeypatch.setattr(snapshots, "MAX_POINTS", 61)
+    assert [block.times for block in snapshots.snapshots_of(run)] == [
+        slice(0, 2),
+        slice(2, 4),
+        slice(4, 6),
+        slice(6, 7),
+    ]
+    divided = degrees(run, 60.0), clusters(run, 60.0), nearest_distances(run, 4, 90.0)
+    for one, other in zip(whole, divided, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_robots_in_one_place_at_all_times_are_neighbours_of_that_time_only() -> None:
+    run = run_at(np.full((50, 4, 2), 500.0))
+    np.testing.assert_array_equal(degrees(run, 133.0), 3.0)
+    np.testing.assert_array_equal(degrees(run, np.inf), 3.0)
+    np.testing.assert_array_equal(nearest_distances(run, 3), 0.0)
+    assert np.isnan(nearest_distances(run, 5)[..., 3:]).all()

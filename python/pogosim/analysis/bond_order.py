@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.analysis.neighbourhood import tree_of
+from pogosim.analysis.snapshots import nearest_of, snapshots_of
 from pogosim.analysis.trajectories import Trajectories
 
 Complex = npt.NDArray[np.complex128]
@@ -26,17 +26,13 @@ def bond_order(run: Trajectories, k: int = 6) -> Complex:
         Shape (T, N), complex. NaN at times with less than k + 1 robots, and for robots that are not there.
     """
     psi = np.full(run.is_there.shape, np.nan, dtype=np.complex128)
-    for time, there in enumerate(run.is_there):
-        if np.count_nonzero(there) <= k:
-            continue
-        position = run.position_mm[time, there]
-        own = np.arange(len(position))[:, None]
-        tree, points = tree_of(position, run.arena)
-        _, nearest = tree.query(points, k + 1)
+    enough = run.is_there & (run.is_there.sum(axis=1) > k)[:, None]
+    for own in snapshots_of(run, enough):
+        _, nearest = nearest_of(own, run.arena, k + 1)
         # A robot is among its own nearest, first or, if others stand in the same place, later, or not at all.
-        is_own = nearest == own
+        is_own = nearest == np.arange(len(nearest))[:, None]
         is_own[~is_own.any(axis=1), -1] = True
-        neighbours = nearest[~is_own].reshape(len(position), k)
-        offset = run.arena.minimum_image(position[neighbours] - position[:, None])
-        psi[time, there] = np.exp(1j * k * np.arctan2(offset[..., 1], offset[..., 0])).mean(axis=1)
+        neighbours = nearest[~is_own].reshape(len(nearest), k)
+        offset = run.arena.minimum_image(own.position_mm[neighbours] - own.position_mm[:, None])
+        own.put(psi, np.exp(1j * k * np.arctan2(offset[..., 1], offset[..., 0])).mean(axis=1))
     return psi

@@ -8,8 +8,10 @@ import numpy as np
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.floor import floor_of_centres, set_covariance
-from pogosim.analysis.neighbourhood import pairs_within
+from pogosim.analysis.snapshots import Snapshots, pairs_of, snapshots_of
 from pogosim.analysis.trajectories import Trajectories
+
+MAX_CELLS = 1_000_000  # bins of all times of a block
 
 
 def distance_bins(greatest_mm: float, width_mm: float) -> Floats:
@@ -57,8 +59,8 @@ def pair_correlation(run: Trajectories, greatest_mm: float = 200.0, width_mm: fl
     edges = distance_bins(greatest_mm, width_mm)
     floor = floor_of_centres(run)
     counted = np.zeros(len(edges) - 1)
-    for _, position, _ in run.snapshots():
-        _, _, distance = pairs_within(position, run.arena, edges[-1])
+    for own in snapshots_of(run):
+        _, _, distance = pairs_of(own, run.arena, edges[-1])
         counted += np.bincount((distance / width_mm).astype(int), minlength=len(edges))[: len(edges) - 1]
     middle = (edges[1:] + edges[:-1]) / 2.0
     if run.arena.is_periodic:
@@ -124,18 +126,26 @@ def vector_correlation(
     uses = run.is_there & np.isfinite(vector).all(axis=2)
     pairs, product = np.zeros((2, len(uses), len(edges) - 1))
     mean_square = np.full(len(uses), np.nan)
-    for time, use in enumerate(uses):
-        if not use.any():
-            continue
-        position, own = run.position_mm[time, use], vector[time, use]
-        own = own - own.mean(axis=0) if fluctuations else own
-        i, j, distance = pairs_within(position, run.arena, edges[-1])
-        bins = (distance / width_mm).astype(int)
-        pairs[time] = np.bincount(bins, minlength=len(edges))[: len(edges) - 1]
+    bins = len(edges)  # and one for what is beyond
+    for block in snapshots_of(run, uses, max(MAX_CELLS // bins, 1)):
+        own = block.of(vector)
+        count = np.maximum(block.counts, 1)
+        if fluctuations:
+            own = own - (summed(block, own) / count[:, None])[block.time]
+        i, j, distance = pairs_of(block, run.arena, edges[-1])
+        cell = bins * block.time[i] + (distance / width_mm).astype(int)
         scalar = own[i, 0] * own[j, 0] + own[i, 1] * own[j, 1]
-        product[time] = np.bincount(bins, scalar, minlength=len(edges))[: len(edges) - 1]
-        mean_square[time] = (own**2).sum(axis=1).mean()
+        for table, weights in ((pairs, None), (product, scalar)):
+            found = np.bincount(cell, weights, minlength=bins * block.length)
+            table[block.times] = found.reshape(block.length, bins)[:, :-1]
+        squares = summed(block, own**2).sum(axis=1)
+        mean_square[block.times] = np.where(block.counts > 0, squares / count, np.nan)
     return VectorCorrelation((edges[1:] + edges[:-1]) / 2.0, pairs, product, mean_square)
+
+
+def summed(block: Snapshots, vector: Floats) -> Floats:
+    """Return the sums of the vectors of the points at each time. Shape (n, 2) to (length, 2)."""
+    return np.column_stack([np.bincount(block.time, part, minlength=block.length) for part in vector.T])
 
 
 def correlation_length(distance_mm: Floats, correlation: Floats) -> float:
@@ -151,9 +161,17 @@ def correlation_length(distance_mm: Floats, correlation: Floats) -> float:
     Returns:
         Length in mm; NaN if there are no pairs at all.
     """
-    known = np.isfinite(correlation)
-    if not known.any():
-        return float("nan")
-    x = np.concatenate([[0.0], distance_mm[known]])
-    y = np.maximum(np.concatenate([[1.0], correlation[known]]), 0.0)
-    return float((np.diff(x) * (y[1:] + y[:-1])).sum() / 2.0)
+    return float(correlation_lengths(distance_mm, correlation[None])[0])
+
+
+def correlation_lengths(distance_mm: Floats, correlation: Floats) -> Floats:
+    """Return the `correlation_length` of each time. Shapes (B,) and (T, B) to (T,)."""
+    first = np.zeros((len(correlation), 1))
+    value = np.hstack([first + 1.0, np.maximum(correlation, 0.0)])
+    x = np.concatenate([[0.0], distance_mm])
+    known = np.isfinite(value)
+    # The bin before each that has pairs, itself left out.
+    before = np.maximum.accumulate(np.where(known, np.arange(len(x)), 0), axis=1)[:, :-1]
+    area = (x[1:] - x[before]) * (value[:, 1:] + np.take_along_axis(value, before, axis=1)) / 2.0
+    has = known[:, 1:]
+    return np.where(has.any(axis=1), np.where(has, area, 0.0).sum(axis=1), np.nan)

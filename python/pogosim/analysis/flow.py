@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
+from scipy import sparse
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.floor import grid_of
-from pogosim.analysis.neighbourhood import tree_of
+from pogosim.analysis.snapshots import Integers, blocks_of
 from pogosim.analysis.trajectories import Trajectories
 
 MIN_ROBOTS = 4
+MAX_PAIRS = 1_000_000  # of robots and cells, in a block of times
 
 
 @dataclass(frozen=True)
@@ -92,56 +92,165 @@ def velocity_fields(
     Yields:
         Time in s, and the field.
     """
-    cells = grid_of(flow_bounds(run), shape)
-    for time, position, own in zip(run.time_s, run.position_mm, velocity, strict=True):
-        use = np.isfinite(position).all(axis=1) & np.isfinite(own).all(axis=1)
-        yield float(time), velocity_field(run.arena, position[use], own[use], cells, radius_mm)
+    for times, fields in blocks_of_fields(run, velocity, radius_mm, shape):
+        for time, value, gradient in zip(run.time_s[times], fields.velocity, fields.gradient, strict=True):
+            yield float(time), VelocityField(value, gradient)
 
 
-def velocity_field(
-    arena: Arena, position_mm: Floats, velocity: Floats, cells_mm: Floats, radius_mm: float
+def blocks_of_fields(
+    run: Trajectories, velocity: Floats, radius_mm: float, shape: tuple[int, int] = (64, 64)
+) -> Iterator[tuple[slice, VelocityField]]:
+    """Yield blocks of times, and the fields of `velocity_fields` at these, with times as their first axis."""
+    grid = Grid(flow_bounds(run), shape)
+    use = run.is_there & np.isfinite(velocity).all(axis=2)
+    use &= (use.sum(axis=1) >= MIN_ROBOTS)[:, None]
+    around = grid.most_near(radius_mm)
+    for times in blocks_of(np.maximum(use.sum(axis=1) * around, grid.cells) / MAX_PAIRS):
+        time, robot = np.nonzero(use[times])
+        position, own = run.position_mm[times][time, robot], velocity[times][time, robot]
+        images = images_near(run.arena, position, radius_mm)
+        time, position, own = time[images.robot], position[images.robot] + images.shift_mm, own[images.robot]
+        yield times, fitted(grid, times.stop - times.start, time, position, own, run.arena.period_mm, radius_mm)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells side by side over a box, as of `grid_of`."""
+
+    bounds_mm: tuple[Floats, Floats]
+    shape: tuple[int, int]  # columns, rows
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return self.shape[0] * self.shape[1]
+
+    def centres_mm(self, axis: int) -> Floats:
+        """Return x (axis 0) of the columns, or y (axis 1) of the rows."""
+        low, high = self.bounds_mm
+        count = self.shape[axis]
+        return np.asarray(low[axis] + (high - low)[axis] * (np.arange(count) + 0.5) / count)
+
+    def window(self, axis: int, place_mm: Floats, radius_mm: float) -> tuple[Integers, Floats]:
+        """Return the columns (axis 0) or rows (axis 1) that may be within the radius, and the way from them to a place.
+
+        Args:
+            axis: 0 or 1.
+            place_mm: x or y, shape (n,).
+            radius_mm: The radius.
+
+        Returns:
+            Numbers and offsets in mm, shape (n, w) each. Where there is no such column, the offset is infinite.
+        """
+        centres = self.centres_mm(axis)
+        count = min(self.width(axis, radius_mm), len(centres))
+        first = np.searchsorted(centres, place_mm - radius_mm * (1.0 + 1e-9))
+        number = first[:, None] + np.arange(count)
+        inside = number < len(centres)
+        number = np.where(inside, number, 0)
+        return number, np.where(inside, place_mm[:, None] - centres[number], np.inf)
+
+    def width(self, axis: int, radius_mm: float) -> int:
+        """Return how many columns (axis 0) or rows (axis 1) can be within the radius of a place."""
+        side = float((self.bounds_mm[1] - self.bounds_mm[0])[axis]) / self.shape[axis]
+        return self.shape[axis] if 2.0 * radius_mm >= side * self.shape[axis] else int(2.0 * radius_mm / side) + 2
+
+    def most_near(self, radius_mm: float) -> int:
+        """Return how many cells can be within the radius of a place, at most."""
+        wide, high = (min(self.width(axis, radius_mm), self.shape[axis]) for axis in (0, 1))
+        return wide * high
+
+
+@dataclass(frozen=True)
+class Images:
+    """Robots, and those of their images across periodic borders that are near the arena. M of them."""
+
+    robot: Integers  # (M,), number of the robot
+    shift_mm: Floats  # (M, 2)
+
+
+def images_near(arena: Arena, position_mm: Floats, radius_mm: float) -> Images:
+    """Return the images of robots that are within the radius of the arena's box; themselves, if it has walls."""
+    robots = np.arange(len(position_mm))
+    if not arena.is_periodic:
+        return Images(robots, np.zeros_like(position_mm))
+    low, high = arena.bounds_mm
+    home = arena.wrap(position_mm) - position_mm
+    numbers, shifts = [], []
+    for x in (-1, 0, 1):
+        for y in (-1, 0, 1):
+            shift = home + np.array([x, y]) * arena.size_mm
+            place = position_mm + shift
+            near = ((place >= low - radius_mm) & (place <= high + radius_mm)).all(axis=1)
+            numbers.append(robots[near])
+            shifts.append(shift[near])
+    number = np.concatenate(numbers)
+    order = np.argsort(number, kind="stable")  # in the order of times
+    return Images(number[order], np.concatenate(shifts)[order])
+
+
+def fitted(
+    grid: Grid,
+    times: int,
+    time: Integers,
+    position_mm: Floats,
+    velocity: Floats,
+    period_mm: Floats | None,
+    radius: float,
 ) -> VelocityField:
-    """Fit the velocity field at places; see `velocity_fields`.
+    """Fit the velocity fields of several times; see `velocity_fields`.
 
     Args:
-        arena: Across periodic borders, the nearest images count.
-        position_mm: Shape (n, 2), finite.
+        grid: Where to.
+        times: How many.
+        time: Number of the time of each robot, shape (n,).
+        position_mm: Shape (n, 2), finite; images across periodic borders are robots too.
         velocity: Shape (n, 2), mm/s, finite.
-        cells_mm: Places, shape (rows, columns, 2).
-        radius_mm: How far robots count.
+        period_mm: Of a periodic arena, where the nearest image counts.
+        radius: How far robots count, mm.
+
+    Returns:
+        Arrays of shapes (times, rows, columns, ...).
     """
-    shape = cells_mm.shape[:2]
-    places = cells_mm.reshape(-1, 2)
-    if len(position_mm) < MIN_ROBOTS:
-        return VelocityField(np.full((*shape, 2), np.nan), np.full((*shape, 2, 2), np.nan))
-    cell, robot, distance = near(arena, places, position_mm, radius_mm)
-    weight = (1.0 - (distance / radius_mm) ** 2) ** 2
-    offset = arena.minimum_image(position_mm[robot] - places[cell])
-
-    def total(values: Floats) -> Floats:
-        return np.asarray(np.bincount(cell, values, minlength=len(places)), dtype=float)
-
+    columns, rows = grid.shape
+    # Around the middle of the grid, squares stay small, and so do rounding errors.
+    middle = (grid.bounds_mm[0] + grid.bounds_mm[1]) / 2.0
+    (column, x), (row, y) = (grid.window(axis, position_mm[:, axis], radius) for axis in (0, 1))
+    if period_mm is not None:
+        x, y = (np.where((own >= -size / 2.0) & (own < size / 2.0), own, np.inf)
+                for own, size in zip((x, y), period_mm, strict=True))  # fmt: skip
+    square = (y**2)[:, :, None] + (x**2)[:, None, :]
+    near = square <= radius**2
+    cell = (((time[:, None] * rows + row) * columns)[:, :, None] + column[:, None, :])[near]
+    weight = (1.0 - square[near] / radius**2) ** 2
+    # Sums over the robots around each cell are the product of a sparse matrix of weights and what robots have.
+    p, v = position_mm - middle, velocity
+    of_robots = np.column_stack(
+        [np.ones(len(p)), p, v, p[:, 0] ** 2, p[:, 0] * p[:, 1], p[:, 1] ** 2]
+        + [v[:, a] * p[:, b] for a in (0, 1) for b in (0, 1)]
+    )
+    starts = np.concatenate([[0], np.cumsum(np.count_nonzero(near, axis=(1, 2)))])
+    size = times * rows * columns
+    matrix = sparse.csc_array((weight, cell, starts), shape=(size, len(p)))
+    value, gradient = np.full((size, 2), np.nan), np.full((size, 2, 2), np.nan)
+    enough = np.flatnonzero(np.bincount(cell, minlength=size) >= MIN_ROBOTS)
+    sums = (matrix @ of_robots)[enough].T
+    lines, across = np.divmod(enough % (rows * columns), columns)
+    centre = np.stack([grid.centres_mm(0)[across], grid.centres_mm(1)[lines]]) - middle[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
-        all_weights = total(weight)
-        centre = np.stack([total(weight * offset[:, a]) for a in (0, 1)], axis=1) / all_weights[:, None]
-        mean = np.stack([total(weight * velocity[robot, a]) for a in (0, 1)], axis=1) / all_weights[:, None]
-        arm = offset - centre[cell]
-        xx, xy, yy = (total(weight * arm[:, a] * arm[:, b]) / all_weights for a, b in ((0, 0), (0, 1), (1, 1)))
+        means = sums[1:] / sums[0]
+        place, mean = means[0:2], means[2:4]
+        xx, xy, yy = means[4] - place[0] ** 2, means[5] - place[0] * place[1], means[6] - place[1] ** 2
         determinant = xx * yy - xy**2
-        inverse = np.stack([yy, -xy, -xy, xx], axis=1).reshape(-1, 2, 2) / determinant[:, None, None]
-        product = np.stack([total(weight * velocity[robot, a] * arm[:, b]) for a in (0, 1) for b in (0, 1)], axis=1)
-        gradient = (product / all_weights[:, None]).reshape(-1, 2, 2) @ inverse
-        value = mean - (gradient @ centre[:, :, None])[:, :, 0]
-        off_centre = np.einsum("na,nab,nb->n", centre, inverse, centre)
-        good = (total(np.ones(len(cell))) >= MIN_ROBOTS) & (determinant > 1e-3 * (xx + yy) ** 2) & (off_centre < 1.0)
-    value[~good], gradient[~good] = np.nan, np.nan
-    return VelocityField(value.reshape(*shape, 2), gradient.reshape(*shape, 2, 2))
-
-
-def near(
-    arena: Arena, places: Floats, position_mm: Floats, radius_mm: float
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Floats]:
-    """Return all pairs of a place and a position within the radius: both indices, and the distance."""
-    trees = [tree_of(points, arena)[0] for points in (places, position_mm)]
-    found = trees[0].sparse_distance_matrix(trees[1], radius_mm, output_type="ndarray")
-    return found["i"].astype(np.int64), found["j"].astype(np.int64), found["v"]
+        slopes = np.empty((2, 2, len(enough)))
+        for a in (0, 1):
+            along_x, along_y = (means[7 + 2 * a + b] - mean[a] * place[b] for b in (0, 1))
+            slopes[a, 0] = (along_x * yy - along_y * xy) / determinant
+            slopes[a, 1] = (along_y * xx - along_x * xy) / determinant
+        off = place - centre
+        off_centre = (off[0] ** 2 * yy - 2.0 * off[0] * off[1] * xy + off[1] ** 2 * xx) / determinant
+        good = (determinant > 1e-3 * (xx + yy) ** 2) & (off_centre < 1.0)
+    there = enough[good]
+    value[there] = (mean - slopes[:, 0] * off[0] - slopes[:, 1] * off[1])[:, good].T
+    gradient[there] = np.moveaxis(slopes[:, :, good], 2, 0)
+    return VelocityField(value.reshape(times, rows, columns, 2), gradient.reshape(times, rows, columns, 2, 2))

@@ -20,12 +20,12 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.snapshots import Integers as Integers
+from pogosim.analysis.snapshots import nearest_of, pairs_at_times, pairs_of, snapshots_of
 from pogosim.analysis.trajectories import Trajectories, given
 
 if TYPE_CHECKING:
-    from scipy import sparse, spatial
-
-Integers = npt.NDArray[np.int64]
+    from scipy import sparse
 
 
 @dataclass(frozen=True)
@@ -55,28 +55,10 @@ class Neighbours:
         from scipy.sparse import csgraph
 
         label = csgraph.connected_components(self.adjacency(), directed=False)[1]
-        return by_size(label, self.is_there)
-
-
-def tree_of(position_mm: Floats, arena: Arena) -> tuple[spatial.cKDTree, Floats]:
-    """Return a tree for searches of neighbours, and the points in it: in periodic arenas, wrapped into the box.
-
-    scipy's trees keep all digits, and take distances beyond half a periodic box; freud's queries do neither.
-
-    Args:
-        position_mm: Shape (n, 2), finite.
-        arena: Its borders.
-
-    Returns:
-        The tree, which knows the borders, and the points to ask it about, shape (n, 2), in mm.
-    """
-    from scipy import spatial
-
-    if not arena.is_periodic:
-        return spatial.cKDTree(position_mm), position_mm
-    points = np.mod(position_mm - arena.bounds_mm[0], arena.size_mm)
-    points = np.where(points < arena.size_mm, points, 0.0)  # of a tiny negative number, mod is the size itself
-    return spatial.cKDTree(points, boxsize=arena.size_mm), points
+        cluster = np.full(len(self.is_there), -1, dtype=np.int64)
+        own = label[self.is_there].astype(np.int64)
+        cluster[self.is_there] = ranks(own, np.zeros(len(own), dtype=np.int64))
+        return cluster
 
 
 def neighbour_pairs(position_mm: Floats, arena: Arena, reach_mm: float) -> tuple[Integers, Integers, Floats]:
@@ -99,12 +81,7 @@ def neighbour_pairs(position_mm: Floats, arena: Arena, reach_mm: float) -> tuple
 
 def pairs_within(position_mm: Floats, arena: Arena, reach_mm: float) -> tuple[Integers, Integers, Floats]:
     """Find all pairs of points as `neighbour_pairs` does, but each of them once, i < j, in no particular order."""
-    if len(position_mm) < 2:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0)
-    tree, points = tree_of(position_mm, arena)
-    pairs = tree.query_pairs(reach_mm, output_type="ndarray").astype(np.int64)
-    offset = arena.minimum_image(points[pairs[:, 1]] - points[pairs[:, 0]])
-    return pairs[:, 0], pairs[:, 1], np.hypot(offset[:, 0], offset[:, 1])
+    return pairs_at_times(position_mm, np.zeros(len(position_mm), dtype=np.int64), arena, reach_mm)
 
 
 def neighbours(run: Trajectories, reach_mm: float | None = None) -> Iterator[Neighbours]:
@@ -115,10 +92,16 @@ def neighbours(run: Trajectories, reach_mm: float | None = None) -> Iterator[Nei
         reach_mm: Greatest distance; None: that of the run.
     """
     reach = run.reach(reach_mm)
-    for time, positions, is_there in run.snapshots():
-        first, second, distance = neighbour_pairs(positions, run.arena, reach)
-        robots = np.flatnonzero(is_there)
-        yield Neighbours(time, is_there, robots[first], robots[second], distance)
+    for own in snapshots_of(run):
+        i, j, distance = pairs_of(own, run.arena, reach)
+        first, second = np.concatenate([i, j]), np.concatenate([j, i])
+        order = np.argsort(first * len(own.robot) + second)
+        first, second, distance = first[order], second[order], np.concatenate([distance, distance])[order]
+        robot, neighbour = own.robot[first], own.robot[second]
+        border = np.searchsorted(own.time[first], np.arange(own.length + 1))
+        for step, time in enumerate(range(own.times.start, own.times.stop)):
+            part = slice(border[step], border[step + 1])
+            yield Neighbours(float(run.time_s[time]), run.is_there[time], robot[part], neighbour[part], distance[part])
 
 
 def degrees(run: Trajectories, reach_mm: float | None = None) -> Floats:
@@ -133,10 +116,9 @@ def degrees(run: Trajectories, reach_mm: float | None = None) -> Floats:
     """
     reach = run.reach(reach_mm)
     degree = np.full(run.position_mm.shape[:2], np.nan)
-    for step, (_, positions, is_there) in enumerate(run.snapshots()):
-        if len(positions):
-            pairs = tree_of(positions, run.arena)[0].query_pairs(reach, output_type="ndarray")
-            degree[step, is_there] = np.bincount(pairs.ravel(), minlength=len(positions))
+    for own in snapshots_of(run):
+        i, j, _ = pairs_of(own, run.arena, reach)
+        own.put(degree, np.bincount(np.concatenate([i, j]), minlength=len(own.robot)))
     return degree
 
 
@@ -154,12 +136,10 @@ def nearest_distances(run: Trajectories, count: int = 3, reach_mm: float | None 
     reach = run.reach(reach_mm)
     count = given.integer("count", count, least=1)
     distance = np.full((*run.position_mm.shape[:2], count), np.nan)
-    for step, (_, positions, is_there) in enumerate(run.snapshots()):
-        if len(positions):
-            tree, points = tree_of(positions, run.arena)
-            # The nearest is the robot itself, or one at the same place. The bound itself does not count, to scipy.
-            found = tree.query(points, k=count + 1, distance_upper_bound=np.nextafter(reach, np.inf))[0][:, 1:]
-            distance[step, is_there] = np.where(np.isfinite(found), found, np.nan)
+    for own in snapshots_of(run):
+        # The nearest is the robot itself, or one at the same place.
+        found = nearest_of(own, run.arena, count + 1, reach)[0][:, 1:]
+        own.put(distance, np.where(np.isfinite(found), found, np.nan))
     return distance
 
 
@@ -174,17 +154,39 @@ def clusters(run: Trajectories, reach_mm: float | None = None) -> Integers:
         Shape (T, N): 0 in the largest cluster, 1 in the next one, ...; of equal ones, that of the first robot comes
         first. -1 where a robot has no position.
     """
-    return np.stack([now.cluster() for now in neighbours(run, reach_mm)])
+    reach = run.reach(reach_mm)
+    cluster = np.full(run.position_mm.shape[:2], -1, dtype=np.int64)
+    for own in snapshots_of(run):
+        i, j, _ = pairs_of(own, run.arena, reach)
+        own.put(cluster, ranks(components(len(own.robot), i, j), own.time))
+    return cluster
 
 
-def by_size(label: npt.NDArray[np.integer], is_there: npt.NDArray[np.bool_]) -> Integers:
-    """Number clusters from the largest to the smallest, -1 for robots that are not there. Shapes (N,)."""
-    own, first, inverse, count = np.unique(label[is_there], return_index=True, return_inverse=True, return_counts=True)
+def components(count: int, i: Integers, j: Integers) -> Integers:
+    """Return the number of the connected component of each of so many points, given the pairs that are connected."""
+    from scipy import sparse
+    from scipy.sparse import csgraph
+
+    graph = sparse.csr_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(count, count))
+    return np.asarray(csgraph.connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def ranks(label: Integers, time: Integers) -> Integers:
+    """Number the clusters of each time from the largest to the smallest; of equal ones, the first comes first.
+
+    Args:
+        label: Label of the cluster of each point, different ones at different times, shape (n,).
+        time: Number of the time of each point, increasing, shape (n,).
+
+    Returns:
+        Shape (n,).
+    """
+    own, first, inverse, count = np.unique(label, return_index=True, return_inverse=True, return_counts=True)
+    order = np.lexsort((first, -count, time[first]))
+    begin = np.searchsorted(time[first][order], time[first][order])  # place of the first cluster of the same time
     rank = np.empty(len(own), dtype=np.int64)
-    rank[np.lexsort((first, -count))] = np.arange(len(own))
-    ranked = np.full(len(label), -1, dtype=np.int64)
-    ranked[is_there] = rank[inverse]
-    return ranked
+    rank[order] = np.arange(len(own)) - begin
+    return np.asarray(rank[inverse.reshape(-1)])
 
 
 def cluster_sizes(cluster: Integers) -> Integers:

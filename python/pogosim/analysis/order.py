@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.neighbourhood import Integers, pairs_within
+from pogosim.analysis.snapshots import Integers, pairs_of, snapshots_of
 from pogosim.analysis.trajectories import Trajectories
 
 
@@ -94,11 +94,11 @@ def local_alignment(run: Trajectories, direction: Floats, radius_mm: float) -> L
     size = np.zeros(run.is_there.shape, dtype=np.int64)
     total = np.full(direction.shape, np.nan)
     counts = run.is_there & np.isfinite(direction).all(axis=2)
-    for time, use in enumerate(counts):
-        unit = direction[time, use]
-        i, j, _ = pairs_within(run.position_mm[time, use], run.arena, radius_mm)
-        total[time, use] = unit + sum_over_neighbours(unit, i, j)
-        size[time, use] = 1 + np.bincount(np.concatenate([i, j]), minlength=len(unit))
+    for own in snapshots_of(run, counts):
+        unit = own.of(direction)
+        i, j, _ = pairs_of(own, run.arena, radius_mm)
+        own.put(total, unit + sum_over_neighbours(unit, i, j))
+        own.put(size, 1 + np.bincount(np.concatenate([i, j]), minlength=len(unit)))
     m = np.where(size > 1, size, np.nan)
     order = np.minimum(np.hypot(total[..., 0], total[..., 1]) / m, 1.0)
     return LocalAlignment(

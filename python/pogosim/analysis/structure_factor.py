@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import fft
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.floor import box_of, covered_fraction, floor_of_centres
+from pogosim.analysis.snapshots import snapshots_of
 from pogosim.analysis.trajectories import Trajectories
+
+MAX_CELLS = 1_000_000  # cells of all times that are transformed at once
 
 
 def structure_factor(run: Trajectories, shape: tuple[int, int] = (128, 128)) -> tuple[Floats, Floats]:
@@ -40,13 +44,15 @@ def structure_factor(run: Trajectories, shape: tuple[int, int] = (128, 128)) -> 
     window = covered_fraction(floor, shape)
     form = np.fft.rfft2(window / window.sum())
     total, times = np.zeros(form.shape), 0
-    for _, position, _ in run.snapshots():
-        if not len(position):
-            continue
-        column, row = np.clip(((position - low) / cell).astype(int), 0, np.array(shape) - 1).T
-        count = np.bincount(row * columns + column, minlength=rows * columns).reshape(rows, columns)
-        total += np.abs(np.fft.rfft2(count) - len(position) * form) ** 2 / len(position)
-        times += 1
+    for own in snapshots_of(run, most_times=max(MAX_CELLS // (columns * rows), 1)):
+        column, row = np.clip(((own.position_mm - low) / cell).astype(int), 0, np.array(shape) - 1).T
+        place = (own.time * rows + row) * columns + column
+        count = np.bincount(place, minlength=own.length * rows * columns).reshape(-1, rows, columns)
+        robots = own.counts
+        there = np.flatnonzero(robots)
+        difference = fft.rfft2(count[there].astype(float)) - robots[there, None, None] * form
+        total += np.einsum("tyx,t->yx", difference.real**2 + difference.imag**2, 1.0 / robots[there])
+        times += len(there)
     evenness = 1.0 - np.abs(form) ** 2
     kx = 2.0 * np.pi * np.fft.rfftfreq(columns, cell[0])
     ky = 2.0 * np.pi * np.fft.fftfreq(rows, cell[1])

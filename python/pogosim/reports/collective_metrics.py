@@ -11,7 +11,7 @@ import pandas as pd
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.bond_order import bond_order
-from pogosim.analysis.correlations import correlation_length, pair_correlation
+from pogosim.analysis.correlations import correlation_length, correlation_lengths, pair_correlation
 from pogosim.analysis.fluctuations import mean_square_speed, number_fluctuations
 from pogosim.analysis.milling import milling
 from pogosim.analysis.neighbourhood import clusters
@@ -115,8 +115,7 @@ def length_of(table: pd.DataFrame) -> dict[str, float]:
 def compute_align_corr_len(swarm: Swarm) -> pd.DataFrame:
     """Correlation length at each time."""
     own = swarm.correlation
-    lengths = [correlation_length(own.distance_mm, values) for values in own.at_times]
-    return over_time(swarm, correlation_length_mm=np.array(lengths))
+    return over_time(swarm, correlation_length_mm=correlation_lengths(own.distance_mm, own.at_times))
 
 
 def compute_psi_k(swarm: Swarm) -> pd.DataFrame:

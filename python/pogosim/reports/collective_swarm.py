@@ -13,8 +13,9 @@ from pogosim.analysis import motion
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.correlations import VectorCorrelation, vector_correlation
 from pogosim.analysis.directions import directions_of_headings, unit_vectors
-from pogosim.analysis.flow import velocity_fields
+from pogosim.analysis.flow import VelocityField, blocks_of_fields
 from pogosim.analysis.order import LocalAlignment, local_alignment
+from pogosim.analysis.snapshots import Integers
 from pogosim.analysis.trajectories import Trajectories, need_columns
 from pogosim.defaults import MIN_SPEED_MM_S
 
@@ -90,37 +91,40 @@ class Swarm:
         settings = self.settings
         columns, rows = settings.vorticity_shape
         edges = np.linspace(-settings.vorticity_range, settings.vorticity_range, VORTICITY_BINS + 1)
-        counted, cells, table = np.zeros(VORTICITY_BINS), 0, []
+        counted, cells, tables = np.zeros(VORTICITY_BINS), 0, []
         known = np.zeros((rows, columns))
         velocity, vorticity = np.zeros((rows, columns, 2)), np.zeros((rows, columns))
-        for time, field in velocity_fields(self.run, self.velocity, self.run.reach_mm, settings.vorticity_shape):
-            there = np.isfinite(field.vorticity)
-            values = field.vorticity[there]
-            table.append(
-                {
-                    "time_s": time,
-                    "vorticity_per_s": mean(values),
-                    "abs_vorticity_per_s": mean(np.abs(values)),
-                    "enstrophy_per_s2": mean(field.enstrophy[there]),
-                    "swirling_strength_rad_s": mean(field.swirling_strength[there]),
-                    "okubo_weiss_per_s2": mean(field.okubo_weiss[there]),
-                    "vortex_fraction": mean(field.okubo_weiss[there] < 0.0),
-                    "known_fraction": mean(there),
-                }
-            )
-            counted += np.histogram(values, edges)[0]
-            cells += len(values)
-            known += there
-            velocity += np.where(there[:, :, None], field.velocity, 0.0)
-            vorticity += np.where(there, field.vorticity, 0.0)
+        for times, field in blocks_of_fields(self.run, self.velocity, self.run.reach_mm, settings.vorticity_shape):
+            there = np.isfinite(field.gradient[..., 0, 0])
+            time = np.nonzero(there)[0]
+            here = VelocityField(field.velocity[there], field.gradient[there])
+            own = {
+                "vorticity_per_s": here.vorticity,
+                "abs_vorticity_per_s": np.abs(here.vorticity),
+                "enstrophy_per_s2": here.enstrophy,
+                "swirling_strength_rad_s": here.swirling_strength,
+                "okubo_weiss_per_s2": here.okubo_weiss,
+                "vortex_fraction": here.okubo_weiss < 0.0,
+            }
+            means = {name: means_of_groups(time, values, len(there)) for name, values in own.items()}
+            share = there.mean(axis=(1, 2))
+            tables.append(pd.DataFrame({"time_s": self.run.time_s[times], **means, "known_fraction": share}))
+            counted += np.histogram(here.vorticity, edges)[0]
+            cells += len(time)
+            known += there.sum(axis=0)
+            velocity += np.where(there[..., None], field.velocity, 0.0).sum(axis=0)
+            vorticity += np.where(there, field.vorticity, 0.0).sum(axis=0)
         with np.errstate(invalid="ignore"):
             density = counted / (cells * np.diff(edges)) if cells else np.full(VORTICITY_BINS, np.nan)
-            return Vortices(pd.DataFrame(table), density, velocity / known[:, :, None], vorticity / known)
+            return Vortices(
+                pd.concat(tables, ignore_index=True), density, velocity / known[:, :, None], vorticity / known
+            )
 
 
-def mean(values: np.ndarray) -> float:
-    """Return the mean; NaN of nothing."""
-    return float(values.mean()) if values.size else float("nan")
+def means_of_groups(group: Integers, values: np.ndarray, count: int) -> Floats:
+    """Return the mean of the values of each of so many groups; NaN of nothing."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.bincount(group, values, minlength=count) / np.bincount(group, minlength=count))
 
 
 def mean_of_robots(values: Floats) -> Floats:
