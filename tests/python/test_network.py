@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
-from pogosim.analysis import laplacian
+from pogosim.analysis import laplacian, snapshots
 from pogosim.analysis.laplacian import largest_component, spectrum
 from pogosim.analysis.network import (
     averaged_spectra,
@@ -184,3 +185,16 @@ def test_contact_time_is_reach_over_speed() -> None:
     still = run_at(position[:1])
     assert contact_time_s([still]) == ten_periods_s([still]) == np.inf
     assert len(averaged_spectra(still, np.inf)) == 1
+
+
+def test_windows_that_go_on_in_the_next_block_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    position = np.random.default_rng(7).uniform(0.0, 1000.0, (11, 20, 2))
+    position[3:6, 4] = np.nan
+    run = run_at(position)
+    tables = [averaged_spectra(run, window_s, reach_mm=250.0) for window_s in (1.0, 4.0, np.inf)]
+    assert tables[1]["n_times"].tolist() == [4, 4, 3]
+    monkeypatch.setattr(snapshots, "MAX_POINTS", 50)
+    for table, window_s in zip(tables, (1.0, 4.0, np.inf), strict=True):
+        pd.testing.assert_frame_equal(averaged_spectra(run, window_s, reach_mm=250.0), table)
+    now = instantaneous_spectra(run, reach_mm=250.0)
+    np.testing.assert_allclose(tables[0].filter(like="lambda"), now.filter(like="lambda"))

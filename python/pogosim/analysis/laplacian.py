@@ -16,9 +16,13 @@ from scipy.sparse import csgraph
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
 from pogosim.analysis.arena import Floats
+from pogosim.analysis.snapshots import Integers
 
 # Larger components are faster as sparse matrices.
 DENSE_UP_TO = 400
+
+# Elements of matrices that are solved at once.
+MAX_CELLS = 2_000_000
 
 # Eigenvalues beyond the wanted ones, in search of a gap.
 EXTRA = 5
@@ -32,6 +36,16 @@ class Spectrum:
     largest: float  # 0 without edges; NaN without nodes
     nodes: int
     edges: int
+
+
+@dataclass(frozen=True)
+class Spectra:
+    """The `Spectrum` of each of G graphs."""
+
+    smallest: Floats  # (G, k)
+    largest: Floats  # (G,)
+    nodes: Integers  # (G,)
+    edges: Integers  # (G,)
 
 
 def spectrum(adjacency: sparse.csr_array, count: int = 5, zero_tol: float = 1e-10) -> Spectrum:
@@ -48,19 +62,64 @@ def spectrum(adjacency: sparse.csr_array, count: int = 5, zero_tol: float = 1e-1
         The eigenvalues. Those of components with up to 400 nodes are from LAPACK; of larger ones from ARPACK (shifted
         and inverted), checked for completeness by Sylvester's law of inertia.
     """
-    nodes = adjacency.shape[0]
-    if nodes == 0:
-        return Spectrum(np.full(count, np.nan), float("nan"), 0, 0)
-    small: list[Floats] = []
-    largest = 0.0
-    for part in components(adjacency):
-        values, greatest = dense(part) if part.shape[-1] <= DENSE_UP_TO else ends(part, count)
-        small.append(values[values > zero_tol])
-        largest = max(largest, greatest)
-    found = np.sort(np.concatenate(small))[:count] if small else np.empty(0)
-    smallest = np.full(count, np.nan)
-    smallest[: len(found)] = found
-    return Spectrum(smallest, largest, nodes, adjacency.nnz // 2)
+    swarm, _ = spectra(adjacency, np.zeros(adjacency.shape[0], dtype=np.int64), 1, count, zero_tol)
+    return Spectrum(swarm.smallest[0], float(swarm.largest[0]), int(swarm.nodes[0]), int(swarm.edges[0]))
+
+
+def spectra(
+    adjacency: sparse.csr_array, graph: Integers, graphs: int, count: int = 5, zero_tol: float = 1e-10
+) -> tuple[Spectra, Spectra]:
+    """Return the `spectrum` of each of several graphs, and that of its largest connected component.
+
+    Args:
+        adjacency: Of all of them together, see `spectrum`; without edges from one graph to another.
+        graph: Number of the graph of each node, 0 to graphs - 1, increasing, shape (n,).
+        graphs: How many.
+        count: See `spectrum`.
+        zero_tol: See `spectrum`.
+    """
+    number, label = csgraph.connected_components(adjacency, directed=False)
+    size = np.bincount(label, minlength=number)
+    smallest, largest = np.full((number, count), np.inf), np.zeros(number)
+    for which, part in components(adjacency, label, size):
+        values, largest[which] = dense(part) if part.shape[-1] <= DENSE_UP_TO else ends(part, count)
+        values = np.sort(np.where(values > zero_tol, values, np.inf), axis=1)[:, :count]
+        smallest[which, : values.shape[1]] = values
+    first = np.unique(label, return_index=True)[1]
+    home = graph[first]  # of a component
+    edges = np.bincount(label, np.diff(adjacency.indptr), minlength=number).astype(np.int64) // 2
+    nodes = np.bincount(graph, minlength=graphs)
+    swarm = Spectra(
+        least_of_groups(smallest, home, graphs, count),
+        np.where(nodes > 0, 0.0, np.nan),
+        nodes,
+        np.bincount(home, edges, minlength=graphs).astype(np.int64),
+    )
+    np.maximum.at(swarm.largest, home, largest)
+    # Of equal components, the one with the first node.
+    order = np.lexsort((first, -size, home))
+    top = order[np.concatenate([np.ones(min(number, 1), dtype=bool), np.diff(home[order]) > 0])]
+    part = Spectra(np.full((graphs, count), np.nan), np.full(graphs, np.nan), 0 * nodes, 0 * nodes)
+    own = home[top]
+    part.smallest[own] = np.where(np.isfinite(smallest[top]), smallest[top], np.nan)
+    part.largest[own], part.nodes[own], part.edges[own] = largest[top], size[top], edges[top]
+    return swarm, part
+
+
+def least_of_groups(values: Floats, group: Integers, groups: int, count: int) -> Floats:
+    """Return the smallest finite values of each group of rows, increasing, NaN where there are fewer.
+
+    Shapes (n, k) and (n,) to (groups, count).
+    """
+    known = np.isfinite(values)
+    value, owner = values[known], np.broadcast_to(group[:, None], values.shape)[known]
+    order = np.lexsort((value, owner))
+    value, owner = value[order], owner[order]
+    rank = np.arange(len(owner)) - np.searchsorted(owner, owner)
+    found = np.full((groups, count), np.nan)
+    wanted = rank < count
+    found[owner[wanted], rank[wanted]] = value[wanted]
+    return found
 
 
 def largest_component(adjacency: sparse.csr_array) -> sparse.csr_array:
@@ -72,41 +131,60 @@ def largest_component(adjacency: sparse.csr_array) -> sparse.csr_array:
     return adjacency[own][:, own]
 
 
-def components(adjacency: sparse.csr_array) -> Iterator[Floats | sparse.csr_array]:
-    """Yield the components that have edges: equal sizes as an array of shape (m, n, n), large ones one by one."""
-    count, label = csgraph.connected_components(adjacency, directed=False)
-    size = np.bincount(label)
+def components(
+    adjacency: sparse.csr_array, label: Integers, size: Integers
+) -> Iterator[tuple[Integers, Floats | sparse.csr_array]]:
+    """Yield the components that have edges: equal sizes as an array of shape (m, n, n), large ones one by one.
+
+    Args:
+        adjacency: Of all components.
+        label: Number of the component of each node.
+        size: Number of nodes of each component.
+
+    Yields:
+        The numbers of the components, shape (m,), and their adjacency matrices.
+    """
     order = np.argsort(label, kind="stable")
     start = np.concatenate([[0], np.cumsum(size)])
     place = np.empty(len(label), dtype=np.int64)  # of a node in its component
     place[order] = np.arange(len(label)) - np.repeat(start[:-1], size)
     edges = adjacency.tocoo()
+    owner = label[edges.row]
+    by_owner = np.argsort(owner, kind="stable")
+    border = np.searchsorted(owner[by_owner], np.arange(len(size) + 1))
     for nodes in np.unique(size[size > 1]):
         same = np.flatnonzero(size == nodes)
         if nodes > DENSE_UP_TO:
-            yield from (adjacency[own][:, own] for own in (order[start[c] : start[c + 1]] for c in same))
+            for component in same:
+                own = order[start[component] : start[component + 1]]
+                yield np.array([component]), adjacency[own][:, own]
             continue
-        which = np.full(count, -1)
-        which[same] = np.arange(len(same))
-        mine = which[label[edges.row]] >= 0
-        matrices = np.zeros((len(same), nodes, nodes))
-        row, column = edges.row[mine], edges.col[mine]
-        matrices[which[label[row]], place[row], place[column]] = edges.data[mine]
-        yield matrices
+        for part in np.array_split(same, -(-len(same) * nodes**2 // MAX_CELLS)):
+            # The edges of these components, one component after the other.
+            counts = border[part + 1] - border[part]
+            total = np.cumsum(counts)
+            mine = by_owner[np.arange(total[-1]) + np.repeat(border[part] - total + counts, counts)]
+            matrices = np.zeros((len(part), nodes, nodes))
+            which = np.repeat(np.arange(len(part)), counts)
+            matrices[which, place[edges.row[mine]], place[edges.col[mine]]] = edges.data[mine]
+            yield part, matrices
 
 
-def dense(adjacency: Floats | sparse.csr_array) -> tuple[Floats, float]:
+def dense(adjacency: Floats | sparse.csr_array) -> tuple[Floats, Floats]:
     """Return all eigenvalues of connected graphs but the zero of each, and the largest. Shape (m, n, n)."""
     matrices = np.asarray(adjacency)
     laplacian = -matrices
     diagonal = np.arange(matrices.shape[-1])
     laplacian[:, diagonal, diagonal] = matrices.sum(axis=2)
     values = np.linalg.eigvalsh(laplacian)
-    return values[:, 1:].ravel(), float(values[:, -1].max())
+    return values[:, 1:], values[:, -1]
 
 
-def ends(adjacency: Floats | sparse.csr_array, count: int) -> tuple[Floats, float]:
-    """Return the smallest non-zero eigenvalues of a large connected graph, and the largest one. Shape (n, n)."""
+def ends(adjacency: Floats | sparse.csr_array, count: int) -> tuple[Floats, Floats]:
+    """Return the smallest non-zero eigenvalues of a large connected graph, and the largest one.
+
+    Shape (n, n) to (1, count) and (1,).
+    """
     laplacian = sparse.csc_array(csgraph.laplacian(sparse.csc_array(adjacency)))
     nodes = laplacian.shape[0]
     first = np.random.default_rng(0).standard_normal(nodes)  # the same each time
@@ -119,11 +197,11 @@ def ends(adjacency: Floats | sparse.csr_array, count: int) -> tuple[Floats, floa
         gaps = np.diff(values[count:])
         gap = count + int(np.argmax(gaps))
         if gaps.max() > 1e-9 * largest and below(laplacian, float(values[gap : gap + 2].mean())) == gap + 1:
-            return values[1 : count + 1], largest
+            return values[None, 1 : count + 1], np.array([largest])
     except (ArpackError, RuntimeError):  # not converged, or singular
         pass
     every = linalg.eigvalsh(laplacian.toarray())
-    return every[1 : count + 1], float(every[-1])
+    return every[None, 1 : count + 1], every[-1:]
 
 
 def smallest_by_inversion(laplacian: sparse.csc_array, count: int, scale: float, first: Floats) -> Floats:

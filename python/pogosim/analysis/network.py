@@ -7,7 +7,8 @@ can be connected on average; messages that are passed on while robots move see t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +16,9 @@ import pandas as pd
 from scipy import sparse
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.laplacian import Spectrum, largest_component, spectrum
-from pogosim.analysis.neighbourhood import Neighbours, cluster_sizes, neighbours
+from pogosim.analysis.laplacian import Spectra, spectra
+from pogosim.analysis.neighbourhood import components, ranks
+from pogosim.analysis.snapshots import Integers, pairs_of, snapshots_of
 from pogosim.analysis.trajectories import Trajectories, unwrapped
 
 # Save times are stored with 24 bits, so a window may seem to end a little early.
@@ -30,14 +32,27 @@ def graph_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.Data
         A row per time: time (s), n_nodes, n_edges, mean_degree, n_components, largest_component_fraction (of the robots
         that are there).
     """
-    rows = []
-    for now in neighbours(run, reach_mm):
-        nodes, edges = int(now.is_there.sum()), len(now.robot) // 2
-        sizes = cluster_sizes(now.cluster()[None])[0]
-        fraction = sizes[0] / nodes if nodes else np.nan
-        rows.append((now.time_s, nodes, edges, 2 * edges / nodes if nodes else np.nan, len(sizes), fraction))
-    names = ["time", "n_nodes", "n_edges", "mean_degree", "n_components", "largest_component_fraction"]
-    return pd.DataFrame(rows, columns=names)
+    reach = run.reach(reach_mm)
+    shape = len(run.time_s)
+    edges, parts, largest = np.zeros((3, shape), dtype=np.int64)
+    for own in snapshots_of(run):
+        i, j, _ = pairs_of(own, run.arena, reach)
+        edges[own.times] = np.bincount(own.time[i], minlength=own.length)
+        rank = ranks(components(len(own.robot), i, j), own.time)
+        np.maximum.at(parts[own.times], own.time, rank + 1)
+        largest[own.times] = np.bincount(own.time[rank == 0], minlength=own.length)
+    nodes = run.is_there.sum(axis=1)
+    there = np.where(nodes > 0, nodes, np.nan)
+    return pd.DataFrame(
+        {
+            "time": run.time_s,
+            "n_nodes": nodes,
+            "n_edges": edges,
+            "mean_degree": 2 * edges / there,
+            "n_components": parts,
+            "largest_component_fraction": largest / there,
+        }
+    )
 
 
 def instantaneous_spectra(
@@ -56,10 +71,14 @@ def instantaneous_spectra(
         there are fewer), `swarm_lambda_max`, `swarm_n_nodes` and `swarm_n_edges`, and `lcc_...` for its largest
         connected component.
     """
-    rows = []
-    for now in neighbours(run, reach_mm):
-        rows.append({"time": now.time_s, **both_spectra(graph_of(now), count, zero_tol)})
-    return pd.DataFrame(rows)
+    reach = run.reach(reach_mm)
+    tables = []
+    for own in snapshots_of(run):
+        i, j, _ = pairs_of(own, run.arena, reach)
+        graph = adjacency_of(len(own.robot), i, j, np.ones(len(i)))
+        found = spectra(graph, own.time, own.length, count, zero_tol)
+        tables.append(pd.DataFrame({"time": run.time_s[own.times], **columns(*found)}))
+    return pd.concat(tables, ignore_index=True)
 
 
 def averaged_spectra(
@@ -81,15 +100,65 @@ def averaged_spectra(
         A row per window that has a save time: time (s), the middle of its first and last save time, window_s, n_times
         (save times in it), and the columns of `instantaneous_spectra`; edges count with any weight.
     """
-    window = windows_of(run.time_s, window_s)
-    rows = []
-    snapshots = neighbours(run, reach_mm)
-    for number in np.unique(window):
-        times = run.time_s[window == number]
-        adjacency = averaged_graph([next(snapshots) for _ in times])
-        found = both_spectra(adjacency, count, zero_tol)
-        rows.append({"time": (times[0] + times[-1]) / 2, "window_s": window_s, "n_times": len(times), **found})
-    return pd.DataFrame(rows)
+    number, window = np.unique(windows_of(run.time_s, window_s), return_inverse=True)
+    first = np.searchsorted(window, np.arange(len(number)))
+    last = np.append(first[1:], len(window)) - 1
+    times = last - first + 1
+    tables = []
+    for windows, graph, node_window in averaged_graphs(run, window.reshape(-1), times, run.reach(reach_mm)):
+        tables.append(pd.DataFrame(columns(*spectra(graph, node_window, len(windows), count, zero_tol))))
+    middle = (run.time_s[first] + run.time_s[last]) / 2
+    own = pd.DataFrame({"time": middle, "window_s": window_s, "n_times": times})
+    return pd.concat([own, pd.concat(tables, ignore_index=True)], axis=1)
+
+
+def averaged_graphs(
+    run: Trajectories, window: Integers, times: Integers, reach_mm: float
+) -> Iterator[tuple[range, sparse.csr_array, Integers]]:
+    """Yield the adjacency matrices averaged over windows, of some windows after the other.
+
+    Args:
+        run: See `instantaneous_spectra`.
+        window: Number of the window of each save time, 0 to W - 1, increasing, shape (T,).
+        times: Number of save times in each window, shape (W,).
+        reach_mm: Greatest distance of neighbours.
+
+    Yields:
+        The numbers of the windows; their matrices as one, with the robots that are there at some time of a window as
+        its nodes; and the window of each node, counted from the first of these.
+    """
+    robots = len(run.robot_id)
+    key, weight = np.zeros((2, 0), dtype=np.int64)  # of the edges of windows that are not over yet
+    begin = 0
+    for own in snapshots_of(run):
+        i, j, _ = pairs_of(own, run.arena, reach_mm)
+        found, count = np.unique(
+            (window[own.times][own.time[i]] * robots + own.robot[i]) * robots + own.robot[j], return_counts=True
+        )
+        key, inverse = np.unique(np.concatenate([key, found]), return_inverse=True)
+        weight = np.bincount(inverse.reshape(-1), np.concatenate([weight, count]), minlength=len(key)).astype(np.int64)
+        # Windows are over that have no time in the next block.
+        end = len(times) if own.times.stop == len(window) else int(window[own.times.stop])
+        if end == begin:
+            continue
+        over = int(np.searchsorted(key, end * robots**2))
+        at, rest = np.divmod(key[:over], robots**2)
+        i, j = np.divmod(rest, robots)
+        span = slice(int(np.searchsorted(window, begin)), int(np.searchsorted(window, end)))
+        present = np.zeros((end - begin, robots), dtype=bool)
+        time, robot = np.nonzero(run.is_there[span])
+        present[window[span][time] - begin, robot] = True
+        node = np.cumsum(present).reshape(present.shape) - 1
+        share = weight[:over] / times[at]
+        graph = adjacency_of(int(present.sum()), node[at - begin, i], node[at - begin, j], share)
+        yield range(begin, end), graph, np.nonzero(present)[0]
+        key, weight, begin = key[over:], weight[over:], end
+
+
+def adjacency_of(nodes: int, i: Integers, j: Integers, weight: Floats) -> sparse.csr_array:
+    """Return a symmetric adjacency matrix from the edges, each of them once."""
+    where = (np.concatenate([i, j]), np.concatenate([j, i]))
+    return sparse.csr_array((np.concatenate([weight, weight]), where), shape=(nodes, nodes))
 
 
 def windows_of(time_s: Floats, window_s: float) -> npt.NDArray[np.int64]:
@@ -97,33 +166,14 @@ def windows_of(time_s: Floats, window_s: float) -> npt.NDArray[np.int64]:
     return np.asarray(np.floor((time_s - time_s[0]) / window_s + ROUNDING), dtype=np.int64)
 
 
-def averaged_graph(snapshots: list[Neighbours]) -> sparse.csr_array:
-    """Return the mean of the adjacency matrices, without the robots that are at no time there."""
-    total = snapshots[0].adjacency()
-    for now in snapshots[1:]:
-        total = total + now.adjacency()
-    robots = np.flatnonzero(np.any([now.is_there for now in snapshots], axis=0))
-    return sparse.csr_array(total[robots][:, robots] / len(snapshots))
-
-
-def graph_of(now: Neighbours) -> sparse.csr_array:
-    """Return the adjacency matrix of the robots that are there."""
-    return averaged_graph([now])
-
-
-def both_spectra(adjacency: sparse.csr_array, count: int, zero_tol: float) -> dict[str, float]:
-    """Return the columns of a row, for the swarm and for its largest component."""
-    swarm = spectrum(adjacency, count, zero_tol)
-    part = largest_component(adjacency)
-    whole = part.shape == adjacency.shape
-    return columns("swarm", swarm) | columns("lcc", swarm if whole else spectrum(part, count, zero_tol))
-
-
-def columns(prefix: str, found: Spectrum) -> dict[str, float]:
-    """Return the columns of a graph."""
-    numbered = {f"{prefix}_lambda_nz_{number}": value for number, value in enumerate(found.smallest.tolist(), 1)}
-    rest = {"lambda_max": found.largest, "n_nodes": found.nodes, "n_edges": found.edges}
-    return numbered | {f"{prefix}_{name}": value for name, value in rest.items()}
+def columns(swarm: Spectra, largest: Spectra) -> dict[str, npt.NDArray[Any]]:
+    """Return the columns of a table with a row per graph, for the swarm and for its largest component."""
+    found: dict[str, npt.NDArray[Any]] = {}
+    for prefix, own in (("swarm", swarm), ("lcc", largest)):
+        found |= {f"{prefix}_lambda_nz_{number}": values for number, values in enumerate(own.smallest.T, 1)}
+        rest = {"lambda_max": own.largest, "n_nodes": own.nodes, "n_edges": own.edges}
+        found |= {f"{prefix}_{name}": values for name, values in rest.items()}
+    return found
 
 
 def mean_speed_mm_s(run: Trajectories) -> float:
