@@ -1,8 +1,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 import shapely
+from pogosim.analysis import snapshots
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.coverage import coverage_over_time, covered_area
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
@@ -186,3 +188,17 @@ def test_an_unknown_arena_is_an_error() -> None:
     (run,) = trajectories_of(rows_of(lattice(2)[None]), {})
     with pytest.raises(AnalysisError, match="no arena_polygons"):
         coverage_over_time(run)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_cells_of_many_times_are_those_of_each_time_alone(periodic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    position = np.random.default_rng(5).uniform(0.0, 1000.0, (23, 12, 2))
+    position[4, 1:] = np.nan  # one robot
+    position[9] = np.nan  # none
+    position[11, 3] = position[11, 8]
+    (run,) = trajectories_of(rows_of(position), metadata_of(1000.0, periodic))
+    table = coverage_over_time(run)
+    monkeypatch.setattr(snapshots, "MAX_POINTS", 1)
+    pd.testing.assert_frame_equal(coverage_over_time(run), table)
+    assert table["n_cells"].tolist()[4] == 1
+    assert table["mean_area"].iloc[4] == pytest.approx(1e6)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.snapshots import Snapshots, snapshots_of
 from pogosim.analysis.trajectories import Trajectories
-from pogosim.analysis.voronoi import Cells, one_each, voronoi_areas, voronoi_cells
+from pogosim.analysis.voronoi import Cells, cells_of_places, one_each, places_at_times
 from pogosim.errors import AnalysisError
+
+if TYPE_CHECKING:
+    import shapely
 
 
 def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.DataFrame:
@@ -34,11 +38,8 @@ def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.D
     need_arena(run)
     reach = run.reach(reach_mm)
     floor = run.arena.shape()
-    rows = []
-    for _, positions, _ in run.snapshots():
-        cells = voronoi_cells(positions, run.arena, floor)
-        rows.append(statistics(positions, cells, run.arena, reach))
-    table = pd.DataFrame(rows, columns=["mean_area", "std_area", "var_area", "n_cells", "coverage_ratio"])
+    tables = [statistics(own, run.arena, floor, reach) for own in snapshots_of(run)]
+    table = pd.concat(tables, ignore_index=True)
     table["coverage_ratio"] = np.minimum(table["coverage_ratio"] / floor.area, 1.0)
     table.insert(0, "time", run.time_s)
     table.insert(4, "cv_area", table["std_area"] / table["mean_area"])
@@ -56,12 +57,34 @@ def need_arena(run: Trajectories) -> None:
         raise AnalysisError("the floor of its arena has no area")
 
 
-def statistics(position_mm: Floats, cells: Cells, arena: Arena, reach_mm: float) -> tuple[Any, ...]:
-    """Return mean, standard deviation and variance of the areas of cells, their number, and the area reached."""
-    if len(cells) == 0:
-        return np.nan, np.nan, np.nan, 0, 0.0
-    area = voronoi_areas(cells, position_mm, arena)
-    return area.mean(), area.std(), area.var(), len(area), covered_area(cells, position_mm, arena, reach_mm)
+def statistics(own: Snapshots, arena: Arena, floor: shapely.Geometry, reach_mm: float) -> pd.DataFrame:
+    """Return mean, standard deviation and variance of the areas of cells, their number, and the area reached.
+
+    A row for each time of a block.
+    """
+    import shapely
+
+    robots, covered = own.counts, np.zeros(own.length)
+    mean, variance = np.full((2, own.length), np.nan)
+    if len(own.robot):
+        places, place, time = places_at_times(own.position_mm, own.time, arena)
+        cells = cells_of_places(places, time, arena, floor)
+        area = (shapely.area(cells) / np.bincount(place))[place]
+        with np.errstate(invalid="ignore"):
+            mean = np.bincount(own.time, area, minlength=own.length) / robots
+            square = (area - mean[own.time]) ** 2
+            variance = np.bincount(own.time, square, minlength=own.length) / robots
+        reached = np.bincount(time, areas_in_reach(cells, places, reach_mm), minlength=own.length)
+        covered = np.maximum(reached, 0.0)
+    return pd.DataFrame(
+        {
+            "mean_area": mean,
+            "std_area": np.sqrt(variance),
+            "var_area": variance,
+            "n_cells": robots,
+            "coverage_ratio": covered,
+        }
+    )
 
 
 def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: float) -> float:
@@ -79,18 +102,32 @@ def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: floa
     Returns:
         mm^2, exact but for rounding.
     """
-    import shapely
-
     places, place = one_each(position_mm, arena)
     first = np.unique(place, return_index=True)[1]
-    polygons, owner = shapely.get_parts(cells[first], return_index=True)
+    return max(float(areas_in_reach(cells[first], places, reach_mm).sum()), 0.0)
+
+
+def areas_in_reach(cells: Cells, place_mm: Floats, reach_mm: float) -> Floats:
+    """Return the area of the intersection of the cell of each place with a disk around it, mm^2.
+
+    Args:
+        cells: Cells of `cells_of_places`, shape (n,).
+        place_mm: The same places, shape (n, 2).
+        reach_mm: Radius of the disks.
+
+    Returns:
+        Shape (n,); it may be a little below 0, by rounding.
+    """
+    import shapely
+
+    polygons, owner = shapely.get_parts(cells, return_index=True)
     is_area = shapely.area(polygons) > 0.0  # of an intersection that only touches: lines and points
     polygons, owner = polygons[is_area], owner[is_area]
     rings, polygon = shapely.get_rings(polygons, return_index=True)
     if len(rings) == 0:
-        return 0.0
+        return np.zeros(len(cells))
     corners, ring = shapely.get_coordinates(rings, return_index=True)
-    corners = corners - places[owner[polygon[ring]]]
+    corners = corners - place_mm[owner[polygon[ring]]]
     # Outer walls count as areas, holes against them, whatever way round their corners are.
     is_outer = np.concatenate([[True], polygon[1:] != polygon[:-1]])
     inner = ring[1:] == ring[:-1]
@@ -98,7 +135,8 @@ def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: floa
     edge_ring = ring[:-1][inner]
     turn = np.bincount(edge_ring, cross(start, end), minlength=len(rings))
     sign = np.where(is_outer, 1.0, -1.0) * np.sign(turn)
-    return max(float(sign[edge_ring] @ disk_and_edges(start, end, reach_mm)), 0.0)
+    parts = sign[edge_ring] * disk_and_edges(start, end, reach_mm)
+    return np.asarray(np.bincount(owner[polygon[edge_ring]], parts, minlength=len(cells)), dtype=float)
 
 
 def cross(a: Floats, b: Floats) -> Floats:
