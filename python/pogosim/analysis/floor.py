@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,14 +55,23 @@ def set_covariance(floor: shapely.Polygon | shapely.MultiPolygon, distance_mm: F
     """
     import shapely
 
-    radius = np.linspace(0.0, float(distance_mm[-1]), RADII)
+    radius, common = covariance_at_radii(shapely.to_wkb(floor), float(distance_mm[-1]))
+    return np.asarray(np.interp(distance_mm, radius, common))
+
+
+@functools.lru_cache(maxsize=32)
+def covariance_at_radii(floor_wkb: bytes, greatest_mm: float) -> tuple[Floats, Floats]:
+    """Return 32 distances, and the `set_covariance` at these; remembered, as runs of a batch share their arenas."""
+    import shapely
+
+    floor = shapely.from_wkb(floor_wkb)
+    radius = np.linspace(0.0, greatest_mm, RADII)
     angle = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
-    shifts = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    shifted = np.array(
-        [shapely.transform(floor, lambda points, s=shift: points + s) for shift in shifts.reshape(-1, 2)]
-    )
+    shifts = (radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
+    corners = shapely.get_coordinates(floor)
+    shifted = shapely.set_coordinates(np.repeat(floor, len(shifts)), (shifts[:, None] + corners).reshape(-1, 2))
     common = shapely.area(shapely.intersection(shifted, floor)).reshape(RADII, DIRECTIONS)
-    return np.asarray(np.interp(distance_mm, radius, common.mean(axis=1)))
+    return radius, common.mean(axis=1)
 
 
 def grid_of(bounds_mm: tuple[Floats, Floats], shape: tuple[int, int]) -> Floats:
@@ -83,6 +93,15 @@ def covered_fraction(floor: shapely.Polygon | shapely.MultiPolygon, shape: tuple
     """
     import shapely
 
+    return fraction_of_cells(shapely.to_wkb(floor), shape)
+
+
+@functools.lru_cache(maxsize=32)
+def fraction_of_cells(floor_wkb: bytes, shape: tuple[int, int]) -> Floats:
+    """Return the `covered_fraction`; remembered, as runs of a batch share their arenas."""
+    import shapely
+
+    floor = shapely.from_wkb(floor_wkb)
     columns, rows = shape
     samples = grid_of(box_of(floor), (columns * SAMPLES, rows * SAMPLES))
     shapely.prepare(floor)

@@ -221,8 +221,12 @@ def fitted(
                 for own, size in zip((x, y), period_mm, strict=True))  # fmt: skip
     square = (y**2)[:, :, None] + (x**2)[:, None, :]
     near = square <= radius**2
-    cell = (((time[:, None] * rows + row) * columns)[:, :, None] + column[:, None, :])[near]
-    weight = (1.0 - square[near] / radius**2) ** 2
+    first = ((time[:, None] * rows + row) * columns).astype(np.int32)  # sizes of blocks keep them small
+    cell = (first[:, :, None] + column.astype(np.int32)[:, None, :])[near]
+    weight = square[near]
+    weight *= -1.0 / radius**2
+    weight += 1.0
+    weight *= weight
     # Sums over the robots around each cell are the product of a sparse matrix of weights and what robots have.
     p, v = position_mm - middle, velocity
     of_robots = np.column_stack(
