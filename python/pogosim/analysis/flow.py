@@ -206,7 +206,7 @@ def fitted(
         time: Number of the time of each robot, shape (n,).
         position_mm: Shape (n, 2), finite; images across periodic borders are robots too.
         velocity: Shape (n, 2), mm/s, finite.
-        period_mm: Of a periodic arena, where the nearest image counts.
+        period_mm: Size of a periodic arena, where the nearest image counts.
         radius: How far robots count, mm.
 
     Returns:

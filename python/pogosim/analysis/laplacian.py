@@ -72,7 +72,7 @@ def spectra(
     """Return the `spectrum` of each of several graphs, and that of its largest connected component.
 
     Args:
-        adjacency: Of all of them together, see `spectrum`; without edges from one graph to another.
+        adjacency: Adjacency of all graphs together, see `spectrum`; without edges from one graph to another.
         graph: Number of the graph of each node, 0 to graphs - 1, increasing, shape (n,).
         graphs: How many.
         count: See `spectrum`.
@@ -96,7 +96,7 @@ def spectra(
         np.bincount(home, edges, minlength=graphs).astype(np.int64),
     )
     np.maximum.at(swarm.largest, home, largest)
-    # Of equal components, the one with the first node.
+    # Among equal components, the one with the first node.
     order = np.lexsort((first, -size, home))
     top = order[np.concatenate([np.ones(min(number, 1), dtype=bool), np.diff(home[order]) > 0])]
     part = Spectra(np.full((graphs, count), np.nan), np.full(graphs, np.nan), 0 * nodes, 0 * nodes)
@@ -137,7 +137,7 @@ def components(
     """Yield the components that have edges: equal sizes as an array of shape (m, n, n), large ones one by one.
 
     Args:
-        adjacency: Of all components.
+        adjacency: Adjacency of all components.
         label: Number of the component of each node.
         size: Number of nodes of each component.
 

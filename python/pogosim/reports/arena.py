@@ -19,6 +19,7 @@ from pogosim.geometry.arena_file import Outline
 from pogosim.geometry.drawing import draw
 from pogosim.geometry.validity import Room, problems, room_for
 from pogosim.reports.coverage import with_arenas
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import save
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
@@ -50,6 +51,11 @@ def visited_mm2(run: Trajectories) -> float:
         shifts = [(x, y) for x in (-width, 0.0, width) for y in (-height, 0.0, height)]
         covered = shapely.union_all([affinity.translate(covered, *shift) for shift in shifts])
     return float(covered.intersection(run.arena.shape()).area)
+
+
+def row_of_run(run_and_room: tuple[Trajectories, Room | None]) -> pd.DataFrame:
+    """Return `row_of` a run and the room that its arena has."""
+    return row_of(*run_and_room)
 
 
 def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
@@ -100,10 +106,11 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     if len(known) < len(runs):
         warn(prog, f"{len(runs) - len(known)} runs have no arena and are left out")
     folder = output_folder(options)
+    rooms = [room_of(run) for run in known]
+    rows = for_each_run(row_of_run, list(zip(known, rooms, strict=True)), options, "arenas")
     tables, figures = [], set()
-    for run in known:
-        room = room_of(run)
-        tables.append(labelled(row_of(run, room), run))
+    for run, room, row in zip(known, rooms, rows, strict=True):
+        tables.append(labelled(row, run))
         if run.arena.name not in figures:
             figures.add(run.arena.name)
             for problem in problems(outline_of(run)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import pickle
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,6 +20,7 @@ from pogosim.lines import counted
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.groups import by_combination
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
 
@@ -65,17 +67,10 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     runs = read_runs(options, prog)
     settings = settings_of(options, runs)
     folder = output_folder(options)
-    tables: dict[str, list[pd.DataFrame]] = {metric.key: [] for metric in METRICS}
-    fields: dict[str, Vortices] = {}
     first = {name: own[0] for name, own in by_combination(runs, runs).items()}
-    for run in runs:
-        swarm = Swarm(run, settings)
-        for metric in METRICS:
-            if run.arena.polygons or not metric.needs_arena:
-                tables[metric.key].append(metric.compute(swarm))
-            else:
-                tables[metric.key].append(pd.DataFrame())
-        fields |= {name: swarm.vortices for name, own in first.items() if own is run}
+    found = for_each_run(functools.partial(tables_of, settings=settings), runs, options, "collective")
+    tables = {metric.key: [own[metric.key] for own, _ in found] for metric in METRICS}
+    fields = {name: found[number][1] for name, own in first.items() for number, run in enumerate(runs) if run is own}
     warn_of_missing(prog, runs, tables)
     joined = {metric.key: joined_table(runs, tables[metric.key]) for metric in METRICS}
     for metric in METRICS:
@@ -88,6 +83,16 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
         write_details(folder, runs, settings)
         with (folder / "metrics.pkl").open("wb") as file:
             pickle.dump(joined, file, protocol=4)
+
+
+def tables_of(run: Trajectories, settings: Settings) -> tuple[dict[str, pd.DataFrame], Vortices]:
+    """Return the tables of all metrics of a run, empty for those that need an arena that is not known, and its flow."""
+    swarm = Swarm(run, settings)
+    tables = {
+        metric.key: metric.compute(swarm) if run.arena.polygons or not metric.needs_arena else pd.DataFrame()
+        for metric in METRICS
+    }
+    return tables, swarm.vortices
 
 
 def joined_table(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame]) -> pd.DataFrame:

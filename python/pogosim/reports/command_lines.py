@@ -58,6 +58,13 @@ def analysis_parser(prog: str, description: str) -> Parser:
     parser.add_argument(
         "--rc", type=positive, metavar="MM", help="neighbours are closer than this (communication_radius + 2 radius)"
     )
+    parser.add_argument(
+        *("-j", "--jobs", "--workers"),
+        type=whole(1, 10**4),
+        default=1,
+        metavar="N",
+        help="runs analysed at the same time, each in a process of its own (%(default)s)",
+    )
     return parser
 
 

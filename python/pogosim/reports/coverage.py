@@ -20,6 +20,7 @@ from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
 from pogosim.geometry.arena_file import ArenaError
 from pogosim.geometry.configured import arena_of, read_entries
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import draw_bands, draw_over_time, new_figure, save, save_over_time
 from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
 from pogosim.reports.options import output_folder, read_runs, write_table
@@ -71,7 +72,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = with_arenas(of_number(read_runs(options, prog), options), options)
     try:
-        tables = [coverage_over_time(run) for run in runs]
+        tables = for_each_run(coverage_over_time, runs, options, "coverage")
     except AnalysisError as error:
         raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
     folder = output_folder(options)

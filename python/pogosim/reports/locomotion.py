@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import functools
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,7 @@ from pogosim.analysis.density import count_outside
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
 from pogosim.lines import counted
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.groups import by_combination, group_names
 from pogosim.reports.heat_maps import arenas_of, draw_heat_maps
 from pogosim.reports.locomotion_figures import RunTables, draw_all
@@ -35,14 +38,14 @@ FRAMES = 120
 UNITS = {"mm_s": "mm/s", "rad_s": "rad/s", "mm2_s": "mm²/s", "mm": "mm", "s": "s"}
 
 
-def tables_of(run: Trajectories, options: argparse.Namespace) -> RunTables:
-    """Compute all tables of a run."""
+def tables_of(run: Trajectories, window_s: float, characteristic_length_mm: float | None) -> RunTables:
+    """Compute all tables of a run, with the sliding window of speeds and the length of the Peclet number."""
     agents, msd = agent_table(run), msd_table(run)
-    peclet, correlations = peclet_table(run, options.characteristic_length), autocorrelation_table(run)
+    peclet, correlations = peclet_table(run, characteristic_length_mm), autocorrelation_table(run)
     return RunTables(
         run=run,
         agents=agents,
-        over_time=time_table(run, options.window),
+        over_time=time_table(run, window_s),
         peclet=peclet,
         msd=msd,
         correlations=correlations,
@@ -125,7 +128,9 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     """Do the analysis."""
     folder = output_folder(options)
     runs = read_runs(options, prog)
-    tables = [tables_of(run, options) for run in runs]
+    settings = {"window_s": options.window, "characteristic_length_mm": options.characteristic_length}
+    found = for_each_run(functools.partial(tables_of, **settings), runs, options, "locomotion")
+    tables = [replace(own, run=run) for own, run in zip(found, runs, strict=True)]  # not the copies of other processes
     warn_of_what_is_left_out(tables, prog)
     names = group_names(runs)
     write_tables(tables, folder, options.input)

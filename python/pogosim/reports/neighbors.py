@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import pickle
 from argparse import Namespace
 from collections.abc import Sequence
@@ -29,6 +30,7 @@ from pogosim.confidence import mean_over_runs
 from pogosim.fonts import literal
 from pogosim.outputs import OutputError, leads_to
 from pogosim.reports.command_lines import NEIGHBOURS
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import draw_bands, draw_each_run, draw_over_time, new_figure, save
 from pogosim.reports.groups import by_combination
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
@@ -49,7 +51,8 @@ class Found:
 def analyze(options: Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = read_runs(options, prog)
-    found = [find(run, column_of(run, options.neighborsCol), options.k) for run in runs]
+    work = functools.partial(neighbours_of, column=options.neighborsCol, count=options.k)
+    found = for_each_run(work, runs, options, "neighbours")
     unknown = sum(own.unknown for own in found)
     if unknown:
         warn(prog, f"{unknown} of the listed ids are of no robot in the data; they are left out")
@@ -72,6 +75,11 @@ def analyze(options: Namespace, prog: str) -> None:
 def column_of(run: Trajectories, wanted: str | None) -> str | None:
     """Return the column with lists of neighbours: the wanted one, the usual one if it is there, or none."""
     return wanted if wanted is not None else NEIGHBOURS if NEIGHBOURS in run.rows else None
+
+
+def neighbours_of(run: Trajectories, column: str | None, count: int) -> Found:
+    """Compute everything about a run, given the column that is wanted."""
+    return find(run, column_of(run, column), count)
 
 
 def find(run: Trajectories, column: str | None, count: int) -> Found:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,6 +19,7 @@ from pogosim.analysis.network import (
 )
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.command.parser import warn
+from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import save_over_time, save_violins
 from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
 from pogosim.reports.options import labelled, output_folder, read_runs, write_table
@@ -37,26 +39,33 @@ SPECTRUM_PANELS = {
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
     runs = read_runs(options, prog)
-    graphs = [graph_over_time(run) for run in runs]
-    count, tol = options.k_first, options.zero_tol
-    spectra = {"instantaneous_eigs": [instantaneous_spectra(run, count, zero_tol=tol) for run in runs]}
-    for name, windows in windows_of(runs, options.avg_window_s).items():
-        spectra[name] = [
-            averaged_spectra(run, window_s, count, zero_tol=tol) for run, window_s in zip(runs, windows, strict=True)
-        ]
-        whole = sum(math.isinf(window_s) for window_s in windows)
+    windows = windows_of(runs, options.avg_window_s)
+    for name, own in windows.items():
+        whole = sum(math.isinf(window_s) for window_s in own)
         if whole:
             warn(prog, f"in {whole} of {len(runs)} runs, robots do not move, or there is one save time: {name} has one "
                        "window there, the whole run")  # fmt: skip
+    work = functools.partial(tables_of, count=options.k_first, zero_tol=options.zero_tol)
+    each = [(run, {name: own[number] for name, own in windows.items()}) for number, run in enumerate(runs)]
+    found = for_each_run(work, each, options, "graphs")
     folder = output_folder(options)
-    write_runs(runs, graphs, folder / "network_graph.csv", options.input)
-    for name, tables in spectra.items():
+    for name in found[0]:
+        tables = [own[name] for own in found]
         write_runs(runs, tables, folder / f"{name}.csv", options.input)
-    for name, tables in {"network_graph": graphs, **spectra}.items():
         for arena, (own_runs, own_tables) in by_arena(runs, tables).items():
             panels = GRAPH_PANELS if name == "network_graph" else SPECTRUM_PANELS
             save_over_time(own_runs, own_tables, panels, folder / f"{name}_line__arena_{arena}")
             save_violins(own_runs, own_tables, panels, folder / f"{name}_violin__arena_{arena}")
+
+
+def tables_of(
+    run_and_windows: tuple[Trajectories, dict[str, float]], count: int, zero_tol: float
+) -> dict[str, pd.DataFrame]:
+    """Return all tables of a run by name, given the windows of those of averaged graphs."""
+    run, windows = run_and_windows
+    averaged = {name: averaged_spectra(run, window_s, count, zero_tol=zero_tol) for name, window_s in windows.items()}
+    now = instantaneous_spectra(run, count, zero_tol=zero_tol)
+    return {"network_graph": graph_over_time(run), "instantaneous_eigs": now, **averaged}
 
 
 def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str, list[float]]:
