@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from itertools import compress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,8 +19,7 @@ from pogosim.analysis.trajectories import Trajectories
 from pogosim.fonts import literal
 from pogosim.reports.collective_metrics import Metric
 from pogosim.reports.collective_swarm import Vortices
-from pogosim.reports.figures import draw_bands, new_figure, save
-from pogosim.reports.groups import by_combination, group_names
+from pogosim.reports.figures import draw_bands, drawn_by_combination, new_figure, save
 
 ARROWS = 24  # along the longer side
 MAX_PANELS = 12
@@ -27,33 +28,37 @@ MAX_PANELS = 12
 def draw_metric(metric: Metric, runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], folder: Path) -> None:
     """Draw the curves of a metric, a panel for each, with bands over the runs of a combination."""
     is_known = [any(name in table and table[name].notna().any() for name in metric.curves) for table in tables]
-    groups = by_combination(list(compress(runs, is_known)), list(compress(tables, is_known)), group_names(runs))
-    if not groups:
+    if not any(is_known):
         return
-    rows = 1 if len(metric.curves) < 3 else 2
-    columns = -(-len(metric.curves) // rows)
-    figure, axes = new_figure(columns, rows)
-    for own, (name, label) in zip(axes.flat, metric.curves.items(), strict=False):
+
+    def draw(axes: Axes, groups: dict[str, list[pd.DataFrame]], colours: Mapping[str, Any] | None, name: str) -> None:
         curves = {
             group: [pd.Series(table[name].to_numpy(dtype=float), index=table.iloc[:, 0].to_numpy()) for table in parts]
             for group, parts in groups.items()
         }
-        draw_bands(own, curves)
-        own.set(xlabel=metric.x_label, ylabel=label)
+        draw_bands(axes, curves, colours)
+        axes.set(xlabel=metric.x_label, ylabel=metric.curves[name])
         if metric.chance is not None:
-            own.axhline(metric.chance, color="grey", linewidth=0.8, linestyle=":")
+            axes.axhline(metric.chance, color="grey", linewidth=0.8, linestyle=":")
         if metric.limits is not None:
             margin = 0.03 * (metric.limits[1] - metric.limits[0])
-            own.set_ylim(metric.limits[0] - margin, metric.limits[1] + margin)
+            axes.set_ylim(metric.limits[0] - margin, metric.limits[1] + margin)
         if metric.x_label.startswith(("time", "distance")):
-            own.set_xlim(left=0.0)
+            axes.set_xlim(left=0.0)
         if metric.logarithmic:
-            draw_square_root(own)
-    save(figure, folder / metric.figure)
+            draw_square_root(axes, colours is None)
+
+    draws = [functools.partial(draw, name=name) for name in metric.curves]
+    known_runs, known_tables = list(compress(runs, is_known)), list(compress(tables, is_known))
+    rows = 1 if len(draws) < 3 else 2
+    save(drawn_by_combination(known_runs, known_tables, draws, rows), folder / metric.figure)
 
 
-def draw_square_root(axes: Axes) -> None:
-    """Make both axes logarithmic, and draw what independent positions have: sigma = N^(1/2)."""
+def draw_square_root(axes: Axes, names_curves: bool) -> None:
+    """Make both axes logarithmic, and draw what independent positions have: sigma = N^(1/2).
+
+    The legend names all curves, or only this line.
+    """
     if not np.isfinite(axes.dataLim.minpos).all():
         return  # no value above 0
     low, high = axes.dataLim.intervalx
@@ -63,8 +68,9 @@ def draw_square_root(axes: Axes) -> None:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.set_minor_formatter(NullFormatter())
-    axes.plot(x, np.sqrt(x), color="grey", linewidth=0.8, linestyle=":", label="independent positions, $N^{1/2}$")
-    axes.legend(frameon=False, fontsize="small")
+    chance = "independent positions, $N^{1/2}$"
+    line = axes.plot(x, np.sqrt(x), color="grey", linewidth=0.8, linestyle=":", label=chance)
+    axes.legend(handles=None if names_curves else line, frameon=False, fontsize="small")
 
 
 def draw_vorticity_fields(first: Mapping[str, Trajectories], fields: Mapping[str, Vortices], folder: Path) -> None:

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+import functools
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.confidence import mean_over_runs
 from pogosim.fonts import any_characters, literal
-from pogosim.reports.groups import by_combination
+from pogosim.reports.groups import MOST_CURVES, by_combination, by_panel
+
+T = TypeVar("T")
 
 DPI = 150
 FORMATS = (".pdf", ".png")
@@ -42,30 +46,100 @@ def save(figure: Figure, path: Path) -> None:
             figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
 
 
-def draw_bands(axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]]) -> None:
+def colours_of(names: Sequence[str]) -> dict[str, Any]:
+    """Return a colour for each curve."""
+    colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(names), 1)))
+    return dict(zip(names, colours, strict=False))
+
+
+def draw_bands(
+    axes: Axes, curves: Mapping[str, Iterable[pd.Series[Any]]], colours: Mapping[str, Any] | None = None
+) -> None:
     """Draw the mean of several curves of each group, with a band: its 95 % confidence interval.
 
     Args:
         axes: Where to.
         curves: By group: a series per run, indexed by the abscissa. With one run there is no band.
+        colours: Colours of the groups; None: their own, with a legend.
     """
-    colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(curves), 1)))
-    for colour, (name, series) in zip(colours, curves.items(), strict=False):
+    own_colours = colours_of(list(curves)) if colours is None else colours
+    for name, series in curves.items():
         together: dict[Hashable, pd.Series[Any]] = dict(enumerate(series))
         band = mean_over_runs(pd.DataFrame(together))
         x = band.index.to_numpy(dtype=float)
+        colour = own_colours[name]
         axes.plot(x, band["mean"], color=colour, label=literal(name), marker="o" if len(x) == 1 else "")
         axes.fill_between(x, band["low"], band["high"], color=colour, alpha=0.25, linewidth=0)
-    if len(curves) > 1:
-        axes.legend(frameon=False, fontsize="small")
+    if colours is None:
+        name_curves(axes, len(curves))
 
 
-def draw_over_time(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], column: str, label: str) -> None:
+Draw = Callable[[Axes, dict[str, list[T]], "Mapping[str, Any] | None"], None]
+
+
+def drawn_by_combination(
+    runs: Sequence[Trajectories], values: Sequence[T], draws: Sequence[Draw[T]], rows: int = 1
+) -> Figure:
+    """Draw what belongs to each run, combination by combination.
+
+    Up to six combinations are in one panel for each drawing, with a legend. With more of several parameters, the values
+    of one of them have a row of panels each, with the same axes, and colours stand for the others. With more than six
+    curves in a panel, the legend is below all panels.
+
+    Args:
+        runs: The runs.
+        values: What belongs to each.
+        draws: What to draw: functions of the axes, the values by the names of the curves, and the colours of these;
+            without colours, there is a legend to make.
+        rows: Rows of panels, if there is one for each drawing.
+    """
+    panels, names = by_panel(runs, values)
+    if len(panels) == 1:
+        figure, axes = new_figure(-(-len(draws) // rows), rows)
+        colours = colours_of(names) if len(names) > MOST_CURVES else None
+        for own, draw in zip(axes.flat, draws, strict=False):
+            draw(own, next(iter(panels.values())), colours)
+    else:
+        figure, axes = new_figure(len(draws), len(panels), height=3.0)
+        colours = colours_of(names)
+        for line, (title, groups) in zip(axes, panels.items(), strict=True):
+            for own, draw in zip(line, draws, strict=True):
+                draw(own, groups, colours)
+                own.set_title(literal(title), fontsize="medium")
+        for column in axes.T:
+            for limits, set_limits in (("get_xlim", "set_xlim"), ("get_ylim", "set_ylim")):
+                ends = [getattr(own, limits)() for own in column]
+                for own in column:
+                    getattr(own, set_limits)(min(low for low, _ in ends), max(high for _, high in ends))
+    if colours is not None and len(names) > 1:
+        legend_below(figure, [literal(name) for name in names], list(colours.values()))
+    return figure
+
+
+def legend_below(figure: Figure, names: Sequence[str], colours: Sequence[Any]) -> None:
+    """Name the curves below all panels, where the names cover nothing."""
+    width = max(map(len, names)) * 0.085 + 0.6  # of an entry, in inches
+    columns = max(int(figure.get_figwidth() / width), 1)
+    rows = -(-len(names) // columns)
+    figure.set_figheight(figure.get_figheight() + 0.2 * rows)
+    lines = [Line2D([], [], color=colour) for colour in colours]
+    figure.legend(lines, names, frameon=False, fontsize="small", ncols=columns, loc="outside lower center")
+
+
+def draw_over_time(
+    axes: Axes,
+    groups: Mapping[str, Sequence[pd.DataFrame]],
+    column: str,
+    label: str,
+    colours: Mapping[str, Any] | None = None,
+) -> None:
     """Draw a column of the tables over time: the mean over the runs of each combination, with its confidence band.
 
     Values are not negative, and neither is what the axis shows of the bands.
     """
-    draw_bands(axes, {name: [table.set_index("time")[column] for table in own] for name, own in groups.items()})
+    draw_bands(
+        axes, {name: [table.set_index("time")[column] for table in own] for name, own in groups.items()}, colours
+    )
     axes.set_xlabel("time (s)")
     axes.set_ylabel(label)
     axes.set_ylim(bottom=0.0)
@@ -79,7 +153,14 @@ def draw_each_run(axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]]) ->
             own = literal(name) if number == 0 else None
             x = curve.index.to_numpy(dtype=float)
             axes.plot(x, curve, color=colour, linewidth=0.8, alpha=0.8, label=own, marker="o" if len(x) == 1 else "")
-    if len(groups) > 1:
+    name_curves(axes, len(groups))
+
+
+def name_curves(axes: Axes, count: int) -> None:
+    """Name several curves in a legend; beside the axes, if there are so many that it would cover them."""
+    if count > MOST_CURVES:
+        axes.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
+    elif count > 1:
         axes.legend(frameon=False, fontsize="small")
 
 
@@ -110,10 +191,14 @@ def save_over_time(
     runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path
 ) -> None:
     """Save a figure with a panel for each column; panels: column to label."""
-    figure, axes = new_figure(columns=len(panels))
-    for panel, (column, label) in zip(axes[0], panels.items(), strict=True):
-        draw_over_time(panel, by_combination(runs, tables), column, label)
-    save(figure, path)
+
+    def draw(
+        axes: Axes, groups: dict[str, list[pd.DataFrame]], colours: Mapping[str, Any] | None, column: str, label: str
+    ) -> None:
+        draw_over_time(axes, groups, column, label, colours)
+
+    draws = [functools.partial(draw, column=column, label=label) for column, label in panels.items()]
+    save(drawn_by_combination(runs, tables, draws), path)
 
 
 def save_violins(

@@ -9,6 +9,10 @@ from pogosim.analysis.trajectories import Trajectories
 
 T = TypeVar("T")
 
+# With more combinations than this, figures have panels.
+MOST_CURVES = 6
+MOST_PANELS = 12
+
 
 def group_names(runs: Sequence[Trajectories]) -> list[str]:
     """Return the labels whose values differ between runs, apart from the number of the run: those of combinations."""
@@ -64,3 +68,38 @@ def by_arena(runs: Sequence[Trajectories], values: Sequence[T]) -> dict[str, tup
         own_runs.append(run)
         own_values.append(value)
     return arenas
+
+
+def panel_label(runs: Sequence[Trajectories]) -> str | None:
+    """Return the label whose values have a panel each, where one would have too many curves; None: one panel is enough.
+
+    It is the one with the fewest values; the others tell the curves of a panel apart.
+    """
+    names = group_names(runs)
+    if len(names) < 2 or len(by_combination(runs, runs)) <= MOST_CURVES:
+        return None
+    count = {name: len({str(run.labels.get(name)) for run in runs}) for name in names}
+    name = min(names, key=lambda name: count[name])
+    return name if count[name] <= MOST_PANELS else None
+
+
+def by_panel(runs: Sequence[Trajectories], values: Sequence[T]) -> tuple[dict[str, dict[str, list[T]]], list[str]]:
+    """Sort what belongs to each run by panel, and by combination within a panel.
+
+    Returns:
+        By the title of the panel, empty if there is but one, and by the name of the curve; and the names of all curves.
+    """
+    label = panel_label(runs)
+    names = [name for name in group_names(runs) if name != label]
+    if label is None:
+        groups = by_combination(runs, values, names)
+        return {"": groups}, list(groups)
+    panels: dict[str, tuple[list[Trajectories], list[T]]] = {}
+    for run, value in zip(runs, values, strict=True):
+        title = f"{endings([label, *names])[0]} {run.labels.get(label)}"
+        own_runs, own_values = panels.setdefault(title, ([], []))
+        own_runs.append(run)
+        own_values.append(value)
+    return {title: by_combination(*own, names) for title, own in panels.items()}, list(
+        by_combination(runs, values, names)
+    )
