@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Integers = npt.NDArray[np.int64]
 
 # In a block of times, unless one time alone has more.
-MAX_POINTS = 50_000
+MAX_POINTS = 20_000
 MAX_PAIRS = 2_000_000
 
 
