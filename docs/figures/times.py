@@ -124,6 +124,7 @@ def aligned(table: list[str]) -> list[str]:
 
 
 TIMES = {
+    "analyses": Times("../bench/README.md: analyses", printed(PYTHON, "bench/analyses.py")),
     "batch_overhead": Times("../bench/README.md: batch_overhead", printed(PYTHON, "bench/batch_overhead.py")),
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
     "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
