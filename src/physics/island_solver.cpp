@@ -27,6 +27,9 @@ constexpr float kDampingRatio = 3.0F;
 // A soft membrane accelerates bodies to at most this multiple of the highest speed before, and never beyond the speed
 // that sub-steps can follow: a crushed membrane would explode.
 constexpr float kMostThrown = 4.0F;
+// In an island with membranes, a contact takes part in the iterations if its gap at the end of the sub-step would be
+// smaller. The others are checked at the end: hardly any of them has to be solved.
+constexpr float kCloseMm = 0.25F;
 // A hull turns by at most this in a sub-step, rad, as long as there are not too many.
 constexpr float kMostTurnRad = 0.1F;
 // What springs swing by at most in a sub-step, rad, as long as there are not too many.
@@ -444,11 +447,30 @@ bool IslandSolver::limit_speeds(float most_mm_s, float most_rad_s) {
     return is_limited;
 }
 
+/// `now`: on the clock of the movers.
+void IslandSolver::find_close_contacts(float per_h, std::int32_t now) {
+    close_.clear();
+    far_.clear();
+    for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+        Contact const& contact = contacts_[i];
+        Mover& a = movers_[contact.a];
+        Mover& b = movers_[contact.b];
+        float const speed_mm_s = dot(a.velocity_mm_s - b.velocity_mm_s, contact.normal);
+        if (membranes_.empty() || speed_mm_s - contact.least_mm_s < kCloseMm * per_h) {
+            close_.push_back(i);
+            a.changed = b.changed = now;
+        } else {
+            far_.push_back(i);
+        }
+    }
+}
+
 /// Springs and links before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
     int const passes = hulls_.empty() && links_.empty() ? kMostSoftPasses : kMostHullPasses;
     float links_change_mm_s = 0.0F;
     bool are_links_solved = links_.empty();
+    membranes_.begin_iterations(movers_);
     for (int pass = 0; pass < passes; ++pass) {
         bool const backwards = pass % 2 == 0;
         float change_mm_s = membranes_.solve(movers_, backwards, !pushes);
@@ -457,15 +479,18 @@ void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
             // What contacts change later changes the damping of springs by a thousandth of it.
             are_links_solved = !links_.has_rigid() && h_s * links_change_mm_s <= kLinksConvergedMm;
         }
-        for (std::size_t i = 0; i < contacts_.size(); ++i) {
-            Contact& contact = contacts_[backwards ? contacts_.size() - 1 - i : i];
-            float const demanded_mm_s = pushes ? contact.least_mm_s : contact.relaxed_mm_s;
-            change_mm_s = std::max(change_mm_s, solve_contact(contact, demanded_mm_s));
+        for (std::size_t i = 0; i < close_.size(); ++i) {
+            Contact& contact = contacts_[close_[backwards ? close_.size() - 1 - i : i]];
+            change_mm_s = std::max(change_mm_s, solve_contact(contact, contact.demanded_mm_s(pushes)));
         }
         change_mm_s = std::max(change_mm_s, hulls_.solve(movers_, backwards, pushes));
         if (h_s * change_mm_s <= kConvergedMm && h_s * links_change_mm_s <= kLinksConvergedMm) {
-            return;
+            break;
         }
+    }
+    membranes_.end_iterations(movers_);
+    for (std::uint32_t const far : far_) {
+        solve_contact(contacts_[far], contacts_[far].demanded_mm_s(pushes));
     }
 }
 
@@ -503,6 +528,8 @@ bool IslandSolver::solve_soft(World const& world, NearContacts& contacts, bool i
         links_.push_as_before(movers_);
         overlaps = measure(world, contacts, times).overlaps;
         overlaps = hulls_.measure(contacts, movers_, times) || overlaps;
+        find_close_contacts(times.per_h, substep + 1);
+        membranes_.note_pushed(movers_, substep + 1, /*all=*/!hulls_.empty() || !links_.empty());
         if (is_driven && substep == 0) {
             hulls_.push_as_before(contacts, movers_);
         }

@@ -51,6 +51,8 @@ private:
         float normal_impulse = 0.0F;
         float tangent_impulse = 0.0F;
         std::int32_t solved = 0;  // at which count of clock_; -1: not yet, and it has to be
+
+        float demanded_mm_s(bool pushes) const { return pushes ? least_mm_s : relaxed_mm_s; }
     };
 
     /// State of the contacts at the start of a sub-step.
@@ -70,6 +72,7 @@ private:
 
     bool solve_soft(World const& world, NearContacts& contacts, bool is_driven);
     int substeps_of(float dt_s) const;
+    void find_close_contacts(float per_h, std::int32_t now);
     void solve_velocities_softly(float h_s, bool pushes);
     /// Disks alone may turn as fast as they like.
     bool turns_matter() const { return !hulls_.empty() || !links_.empty(); }
@@ -99,7 +102,9 @@ private:
 
     std::vector<Mover> movers_;  // the first one represents everything that is fixed
     std::vector<Contact> contacts_;
-    std::uint32_t pair_count_ = 0;  // contacts between two movable bodies, which come first
+    std::uint32_t pair_count_ = 0;      // contacts between two movable bodies, which come first
+    std::vector<std::uint32_t> close_;  // into contacts_, when soft islands are solved
+    std::vector<std::uint32_t> far_;
     HullContacts hulls_;
     SoftMembranes membranes_;
     IslandLinks links_;

@@ -101,6 +101,25 @@ TEST_P(MembranesOfBothKinds, KeepTheirMomentumWhileTheyShake) {
     EXPECT_NEAR(signed_area(line_of(world)) / signed_area(line_of(ring_world({.segments = segments()}))), 1.0, 0.02);
 }
 
+TEST_P(Membranes, KeepTheirMomentumWhateverTheNumberOfDots) {
+    for (std::uint32_t const dots : {4U, 5U, 7U, 11U, 14U, 33U, 50U}) {
+        World world = ring_world({.dots = dots});
+        RandomStream random(3, dots);
+        for (Vec2& velocity_mm_s : world.bodies.velocity_mm_s) {
+            velocity_mm_s = {20.0F + 30.0F * random.normal(), 30.0F * random.normal()};
+        }
+        Vec2 const drift_mm_s = mean_velocity_mm_s(world);
+        double const first_energy = energy(world);
+        run(world, 2.0);
+        EXPECT_LT(length(mean_velocity_mm_s(world) - drift_mm_s), 0.1F) << dots;
+        EXPECT_LT(energy(world), first_energy) << dots;
+        Vec2 const middle_mm = centre_mm(world, world.objects[0]);
+        for (Vec2 const place_mm : world.bodies.position_mm) {
+            EXPECT_NEAR(length(place_mm - middle_mm), 200.0F, 25.0F) << dots;
+        }
+    }
+}
+
 TEST_P(MembranesOfBothKinds, BecomeRoundAgainAfterTheyWereCrushed) {
     World world = ring_world({.damping_per_s = 2.0F, .segments = segments()});
     double const area_mm2 = signed_area(line_of(world));
