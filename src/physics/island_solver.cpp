@@ -19,8 +19,9 @@ constexpr int kSubsteps = 4;
 constexpr float kConvergedMm = 0.005F;
 constexpr float kLinksConvergedMm = 1e-4F;  // along a chain, what is left adds up
 constexpr int kMostPasses = 8;
-constexpr int kMostSoftPasses = 6;   // an impulse has to travel round a membrane
-constexpr int kMostHullPasses = 10;  // the two touches of a contact push against each other, as links do
+constexpr int kMostSoftPasses = 6;      // an impulse has to travel round a membrane
+constexpr int kMostRelaxingPasses = 3;  // of them: what is left is small
+constexpr int kMostHullPasses = 10;     // the two touches of a contact push against each other, as links do
 // Soft constraint: natural frequency relative to the rate of sub-steps, and damping ratio; see Catto, "Solver2D".
 constexpr float kStiffness = 0.25F;
 constexpr float kDampingRatio = 3.0F;
@@ -467,7 +468,8 @@ void IslandSolver::find_close_contacts(float per_h, std::int32_t now) {
 
 /// Springs and links before contacts: contacts, which must hold, are solved last.
 void IslandSolver::solve_velocities_softly(float h_s, bool pushes) {
-    int const passes = hulls_.empty() && links_.empty() ? kMostSoftPasses : kMostHullPasses;
+    int const soft_passes = pushes ? kMostSoftPasses : kMostRelaxingPasses;
+    int const passes = hulls_.empty() && links_.empty() ? soft_passes : kMostHullPasses;
     float links_change_mm_s = 0.0F;
     bool are_links_solved = links_.empty();
     membranes_.begin_iterations(movers_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace pogosim {
 
@@ -12,8 +13,12 @@ SpringGroups::SpringGroups(World const& world, Membrane const& membrane, std::ui
     std::vector<std::uint32_t> joints(joint_count);
     std::iota(joints.begin(), joints.end(), first_joint);
     std::erase_if(joints, [&](std::uint32_t i) { return world.joints[i].length_mm == 0.0F; });
-    auto const row_of_joint = [&](std::uint32_t i) { return row_of(world.joints[i].a - membrane.body); };
-    std::ranges::stable_sort(joints, {}, row_of_joint);
+    std::uint32_t const half = (row_count_ + 1) / 2;
+    auto const place_of = [&](std::uint32_t i) {
+        std::uint32_t const row = row_of(world.joints[i].a - membrane.body);
+        return std::pair(row % half, row / half);
+    };
+    std::ranges::stable_sort(joints, {}, place_of);
     std::size_t first_of_row = 0;
     for (std::uint32_t const i : joints) {
         Joint const& joint = world.joints[i];

@@ -8,8 +8,9 @@
 //     ...                             row 19 to row 0 has the springs 19-20, 39-40, 59-60 and 79-0.
 //     row 19   19   39   59   79
 //
-// No two springs of a group share a dot. Groups are in the order of their rows, so that one iteration over all of them
-// takes an impulse along a quarter of the membrane.
+// No two springs of a group share a dot. Groups are in the order of their rows, but those of the first half of the rows
+// and those of the second half take turns, so that few of them wait for the one before. One iteration over all of them
+// takes an impulse along an eighth of the membrane.
 #pragma once
 
 #include <array>
