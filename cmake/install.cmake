@@ -7,14 +7,15 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+set(tables pogosim_tables_module)
 if(TARGET pogosim_parquet)
-    set(parquet pogosim_parquet)
+    list(APPEND tables pogosim_parquet)
 endif()
 
 if(SKBUILD)
     # A Python package: in site-packages/pogosim/simulator/lib, with pyarrow beside pogosim. Wheels cannot hold links, so the
     # library has no versions in its name.
-    set_target_properties(pogosim_library ${parquet} PROPERTIES
+    set_target_properties(pogosim_library ${tables} PROPERTIES
         INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../pyarrow")
 else()
     # The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
@@ -22,7 +23,7 @@ else()
     set_target_properties(pogosim_library PROPERTIES
         VERSION "${PROJECT_VERSION}"
         SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
-    set_target_properties(pogosim_library ${parquet} PROPERTIES
+    set_target_properties(pogosim_library ${tables} PROPERTIES
         INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
         INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
@@ -32,7 +33,7 @@ install(TARGETS pogosim pogosim_part_of_programs pogosim_library EXPORT pogosimT
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(TARGETS pogosim_window ${parquet} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
+install(TARGETS pogosim_window ${tables} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
     FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/arenas" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"

@@ -12,7 +12,7 @@ RUN = "run"  # the number of the run in a batch, or of the file among several
 SEED = "seed"
 NUMBERS = "run_numbers"  # in an entry of the metadata `combinations`
 RETRY = "retry_attempt"  # which replacement the seed of the run is, after failures; 0: its own seed
-NAMES = (RUN, SEED, "arena_file")  # kColumnsOfRuns in src/record/columns.cpp
+NAMES = (RUN, SEED, "arena_file")  # kColumnsOfRuns in src/tables/columns.cpp
 KEYS = ("objects.", "parameters.")  # how dotted paths of configuration keys begin; kKeysOfRuns there
 
 # What an object has in one row at each time.

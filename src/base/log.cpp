@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/current_log.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/locked_file.hpp"
@@ -199,7 +200,8 @@ struct CurrentLog {
         static std::unique_ptr<Log> log = std::make_unique<Log>(LogOptions{});
         return log;
     }
-    static Log::Loggers& loggers() { return *(of_thread != nullptr ? *of_thread : *of_process()).loggers_; }
+    static Log& log() { return of_thread != nullptr ? *of_thread : *of_process(); }
+    static Log::Loggers& loggers() { return *log().loggers_; }
 
     static constinit thread_local Log* of_thread;  // null: that of the process
 };
@@ -211,6 +213,10 @@ LogScope::LogScope(Log* log) : before_(CurrentLog::of_thread) {
 
 LogScope::~LogScope() {
     CurrentLog::of_thread = before_;
+}
+
+Log& current_log() {
+    return CurrentLog::log();
 }
 
 void start_logging(LogOptions const& options) {

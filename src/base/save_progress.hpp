@@ -11,9 +11,16 @@ struct SaveProgress {
     std::atomic<std::uint64_t> writes = 0;  // number of successful write calls
 };
 
+inline constinit SaveProgress own_save_progress;
+inline constinit std::atomic<SaveProgress*> shared_save_progress = &own_save_progress;
+
 inline SaveProgress& save_progress() {
-    static SaveProgress progress;
-    return progress;
+    return *shared_save_progress;
+}
+
+/// For a module that is loaded, and has one of its own: it shares that of what has loaded it.
+inline void share_save_progress(SaveProgress& progress) {
+    shared_save_progress = &progress;
 }
 
 }  // namespace pogosim

@@ -33,6 +33,11 @@ private:
     int slot_ = -1;
 };
 
+/// The list of the scratch files of this process. A module that is loaded, and has a copy of this room, shares that of
+/// what has loaded it before it makes its first file.
+void* scratch_files_of_process() noexcept;
+void share_scratch_files(void* list) noexcept;
+
 /// Removes all scratch files of this process. May be called in a signal handler.
 void remove_scratch_files() noexcept;
 

@@ -1,87 +1,74 @@
 #include "record/data_file.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <stdexcept>
 #include <utility>
 
-#include "record/columns.hpp"
-#include "record/complete_file.hpp"
-#include "record/table_file.hpp"
-#include "record/table_memory.hpp"
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "record/tables_module.hpp"
 
 namespace pogosim {
 
 namespace {
 
-constexpr TableKind kKind{
-    .name = "data file", .key = "data_filename", .how_to_do_without = "enable_data_logging: false"};
+TablesModule const& module_for(std::string const& path) {
+    try {
+        return tables_module();
+    } catch (OutOfMemory const&) {
+        throw;
+    } catch (std::runtime_error const& error) {
+        throw OutputError(fmt::format("cannot write the data file '{}' (data_filename): {}", path, error.what()));
+    }
+}
 
 }  // namespace
 
 struct DataFile::Impl {
-    TableMemory memory;
-    Columns columns;
-    TableFile table;
+    explicit Impl(WrittenDataFile* written) : table(written) {}
 
-    Impl(DataFileOptions const& options, LockedFile file)
-        : columns(options, &memory),
-          table({.kind = kKind,
-                 .path = options.path,
-                 .flush_row_count = options.flush_row_count,
-                 .metadata = options.metadata,
-                 .memory = &memory},
-                std::move(file), columns.fields(), [this] { return columns.take(); }) {}
+    WrittenDataFile* table;
 };
 
-std::filesystem::path DataFile::path_beside(std::string const& path) {
-    return CompleteFile::path_beside(path);
-}
-
-std::optional<std::filesystem::path> DataFile::metadata_beside(std::string const& path) {
-    return TableFile::metadata_beside(path);
-}
-
 LockedFile DataFile::reserve(std::string const& path) {
-    return TableFile::reserve(kKind, path);
+    TablesModule const& module = module_for(path);
+    return call_tables([&](TablesCall& call) { return module.reserve_data_file(path, call); });
 }
 
-DataFile::DataFile(DataFileOptions const& options, LockedFile file)
-    : impl_(std::make_unique<Impl>(options, std::move(file))) {}
+DataFile::DataFile(DataFileOptions const& options, LockedFile file) {
+    TablesModule const& module = module_for(options.path);
+    impl_ = std::make_unique<Impl>(
+        call_tables([&](TablesCall& call) { return module.open_data_file(options, std::move(file), call); }));
+}
 
-DataFile::~DataFile() = default;
+DataFile::~DataFile() {
+    TablesCall call{.log = &current_log()};
+    impl_->table->destroy(call);
+}
 
 void DataFile::append(std::span<ObjectRow const> rows, std::span<CellValue const> user) {
-    if (rows.empty()) {
-        return;
-    }
-    std::size_t const width = user.size() / rows.size();
-    while (!rows.empty()) {
-        std::size_t const count = std::min<std::size_t>(rows.size(), impl_->table.room());
-        impl_->table.count_rows(rows.front().time_s, count, status_of([&] {
-                                    return impl_->columns.append(rows.first(count), user.first(count * width));
-                                }));
-        rows = rows.subspan(count);
-        user = user.subspan(count * width);
-    }
+    call_tables([&](TablesCall& call) { impl_->table->append(rows, user, call); });
 }
 
 void DataFile::save_if_due() {
-    impl_->table.save_if_due();
+    call_tables([&](TablesCall& call) { impl_->table->save_if_due(call); });
 }
 
 void DataFile::save() {
-    impl_->table.save();
+    call_tables([&](TablesCall& call) { impl_->table->save(call); });
 }
 
 void DataFile::add_metadata(std::string const& key, std::string const& value) {
-    impl_->table.add_metadata(key, value);
+    call_tables([&](TablesCall& call) { impl_->table->add_metadata(key, value, call); });
 }
 
 void DataFile::close() {
-    impl_->table.close();
+    call_tables([&](TablesCall& call) { impl_->table->close(call); });
 }
 
 std::int64_t DataFile::row_count() const {
-    return impl_->table.row_count();
+    return impl_->table->row_count();
 }
 
 }  // namespace pogosim

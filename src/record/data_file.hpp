@@ -1,9 +1,8 @@
-// The data file: Apache Feather V2 (Arrow IPC, zstd), CSV or Parquet, one row per object and save time; table_file.hpp
-// says how it is written. The only room that includes Arrow.
+// The data file: Apache Feather V2 (Arrow IPC, zstd), CSV or Parquet, one row per object and save time; src/tables
+// writes it.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -53,12 +52,6 @@ public:
     /// Opens and locks the file and creates its folder, so that an unwritable path, or another run that writes the same
     /// file, is detected before the run. The contents remain until a DataFile is created. Throws OutputError.
     static LockedFile reserve(std::string const& path);
-
-    /// The temporary file beside `path` in which a run writes the complete file, if there is no other file.
-    static std::filesystem::path path_beside(std::string const& path);
-
-    /// The file with the metadata of `path`, if that is a CSV file.
-    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
 
     explicit DataFile(DataFileOptions const& options) : DataFile(options, reserve(options.path)) {}
 

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,8 +62,6 @@ struct MessageRow {
 class MessageLog {
 public:
     static LockedFile reserve(std::string const& path);
-    static std::filesystem::path path_beside(std::string const& path);
-    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
 
     explicit MessageLog(MessageLogOptions const& options) : MessageLog(options, reserve(options.path)) {}
     MessageLog(MessageLogOptions const& options, LockedFile file);

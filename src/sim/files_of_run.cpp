@@ -15,8 +15,7 @@
 #include "base/table_format.hpp"
 #include "config/find_file.hpp"
 #include "config/places.hpp"
-#include "record/data_file.hpp"
-#include "record/message_log.hpp"
+#include "record/paths_beside.hpp"
 #include "render/film_file.hpp"
 #include "render/frame_names.hpp"
 #include "sim/flash_state.hpp"
@@ -70,16 +69,14 @@ std::vector<UsedFile> used_files(Scenario const& scenario, std::string const& fi
     add_output(Setting::message_log, output.message_log, true);
     add_output(std::nullopt, film, true);
     if (output.enable_data_logging && !output.data_filename.empty()) {
-        add_beside(Setting::data_filename, DataFile::path_beside(output.data_filename),
+        add_beside(Setting::data_filename, complete_file_beside(output.data_filename),
                    " (used to assemble the data file)");
-        add_beside(Setting::data_filename, DataFile::metadata_beside(output.data_filename),
-                   " (the metadata of the data file)");
+        add_beside(Setting::data_filename, metadata_beside(output.data_filename), " (the metadata of the data file)");
     }
     if (!output.message_log.empty()) {
-        add_beside(Setting::message_log, MessageLog::path_beside(output.message_log),
+        add_beside(Setting::message_log, complete_file_beside(output.message_log),
                    " (used to assemble the message log)");
-        add_beside(Setting::message_log, MessageLog::metadata_beside(output.message_log),
-                   " (the metadata of the message log)");
+        add_beside(Setting::message_log, metadata_beside(output.message_log), " (the metadata of the message log)");
     }
     if (!film.empty()) {
         add_beside(std::nullopt, FilmFile::path_beside(film), " (used to assemble the film)");

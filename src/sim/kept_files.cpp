@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "base/locked_file.hpp"
-#include "record/data_file.hpp"
+#include "record/paths_beside.hpp"
 #include "render/frame_names.hpp"
 
 namespace pogosim {
@@ -27,7 +27,7 @@ fs::path numbered(fs::path const& path, int number, bool is_folder) {
 /// True if there is no such file, nor the metadata of one (of a CSV file).
 bool is_free(fs::path const& name) {
     std::error_code error;
-    std::optional<fs::path> const metadata = DataFile::metadata_beside(name.string());
+    std::optional<fs::path> const metadata = metadata_beside(name.string());
     return !fs::exists(fs::symlink_status(name, error)) &&
            !(metadata && fs::exists(fs::symlink_status(*metadata, error)));
 }
@@ -114,9 +114,9 @@ std::optional<fs::path> keep_frames(Frames const& frames) {
 /// The metadata of a CSV file go with it.
 void keep_metadata(fs::path const& path, fs::path const& name) {
     std::error_code error;
-    std::optional<fs::path> const metadata = DataFile::metadata_beside(path.string());
+    std::optional<fs::path> const metadata = metadata_beside(path.string());
     if (metadata && fs::exists(*metadata, error)) {
-        fs::rename(*metadata, *DataFile::metadata_beside(name.string()), error);
+        fs::rename(*metadata, *metadata_beside(name.string()), error);
     }
 }
 

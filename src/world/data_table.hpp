@@ -48,7 +48,7 @@ struct DataRow {
 };
 
 // The types of users' columns: how each is called, checked and stored. Only the builders of Arrow's arrays are
-// elsewhere, in src/record/columns.cpp.
+// elsewhere, in src/tables/columns.cpp.
 
 /// A row of the table of types.
 struct ColumnTypeRow {

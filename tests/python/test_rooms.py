@@ -18,7 +18,7 @@ OF_FIRMWARE = "emu"  # compiled into programs for the emulated processor, by `ma
 PRIVATE_LIBRARIES = {
     "yaml-cpp/": {"config"},
     "box2d/": {"physics"},
-    "arrow/": {"record"},
+    "arrow/": {"tables"},
     "CLI/": {"app"},
     "imgui": {"render", "view"},
     "png.h": {"render"},

@@ -85,7 +85,7 @@ def needed(file: Path) -> dict[str, Path]:
 
 def test_it_loads_nothing_else_of_the_system(packages: Path, project: Path) -> None:
     binaries = [*packages.glob("pogosim/simulator/lib/*.so"), *packages.glob("pogosim/simulator/bin/*")]
-    assert len(binaries) == 5
+    assert len(binaries) == 6
     for file in [*binaries, *packages.glob("pogosim.libs/*"), project / "first"]:
         for name, path in needed(file).items():
             is_of_a_package = packages in path.resolve().parents or "site-packages" in str(path)
@@ -93,9 +93,10 @@ def test_it_loads_nothing_else_of_the_system(packages: Path, project: Path) -> N
 
 
 def test_arrow_and_sdl_are_those_of_their_packages(packages: Path) -> None:
-    library, parquet, module = sorted(packages.glob("pogosim/simulator/lib/*.so"))
-    assert ["_parquet" in file.name for file in (library, parquet, module)] == [False, True, False]
-    (arrow,) = (path for name, path in needed(library).items() if name.startswith("libarrow.so"))
+    library, parquet, tables, module = sorted(packages.glob("pogosim/simulator/lib/*.so"))
+    assert ["_parquet" in parquet.name, "_tables" in tables.name, "_view" in module.name] == [True] * 3
+    assert not any(name.startswith("libarrow") for name in needed(library))
+    (arrow,) = (path for name, path in needed(tables).items() if name.startswith("libarrow.so"))
     (sdl,) = (path for name, path in needed(module).items() if name.startswith("libSDL2"))
     assert arrow.samefile(next((packages / "pyarrow").glob("libarrow.so.*")))
     assert sdl.samefile(packages / "sdl2dll" / "dll" / "libSDL2-2.0.so")

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "record/data_file.hpp"
-#include "record/unfinished_file.hpp"
 #include "scratch.hpp"
 #include "support/file_size_limit.hpp"
+#include "tables/unfinished_file.hpp"
 
 namespace pogosim {
 namespace {

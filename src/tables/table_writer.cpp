@@ -1,4 +1,4 @@
-#include "record/table_writer.hpp"
+#include "tables/table_writer.hpp"
 
 #include <arrow/api.h>
 #include <arrow/csv/writer.h>
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "base/library_folder.hpp"
-#include "record/parquet_module.hpp"
-#include "record/table_memory.hpp"
+#include "tables/parquet_module.hpp"
+#include "tables/table_memory.hpp"
 
 namespace pogosim {
 

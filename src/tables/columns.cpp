@@ -1,4 +1,4 @@
-#include "record/columns.hpp"
+#include "tables/columns.hpp"
 
 #include <arrow/api.h>
 

@@ -1,4 +1,4 @@
-#include "record/table_file.hpp"
+#include "tables/table_file.hpp"
 
 #include <arrow/api.h>
 #include <arrow/array/concatenate.h>
@@ -21,10 +21,11 @@
 #include "base/save_progress.hpp"
 #include "base/table_format.hpp"
 #include "base/utf8.hpp"
-#include "record/complete_file.hpp"
-#include "record/metadata_beside.hpp"
-#include "record/table_writer.hpp"
-#include "record/unfinished_file.hpp"
+#include "record/paths_beside.hpp"
+#include "tables/complete_file.hpp"
+#include "tables/metadata_beside.hpp"
+#include "tables/table_writer.hpp"
+#include "tables/unfinished_file.hpp"
 
 namespace pogosim {
 
@@ -88,7 +89,7 @@ void check_format(TableKind const& kind, std::string const& path) {
              fmt::format(
                  "its metadata belong in '{}', but a file that Pogosim did not write is already there; move it, or "
                  "choose another name",
-                 MetadataBeside::path_of(path).string()));
+                 metadata_path_of(path).string()));
     }
     if (format == TableFormat::csv && !MetadataBeside::has_short_name(path)) {
         fail(kind, path, "the name is too long for the file of metadata beside it; choose a shorter one");
@@ -453,10 +454,6 @@ LockedFile TableFile::reserve(TableKind const& kind, std::string const& path) {
     } catch (FileError const& error) {
         fail(kind, path, error.what());
     }
-}
-
-std::optional<std::filesystem::path> TableFile::metadata_beside(std::string const& path) {
-    return table_format(path) == TableFormat::csv ? std::optional(MetadataBeside::path_of(path)) : std::nullopt;
 }
 
 TableFile::TableFile(TableFileOptions const& options, LockedFile file, arrow::FieldVector const& fields, TakeCells take)

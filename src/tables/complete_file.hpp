@@ -16,15 +16,12 @@
 #include "base/locked_file.hpp"
 #include "base/scratch_file.hpp"
 #include "base/table_format.hpp"
-#include "record/descriptor_stream.hpp"
+#include "tables/descriptor_stream.hpp"
 
 namespace pogosim {
 
 class CompleteFile {
 public:
-    /// The path where the file is written, beside the unfinished one, if there is no other file.
-    static std::filesystem::path path_beside(std::filesystem::path const& unfinished);
-
     /// Makes an empty file beside `unfinished`, else one without a name in the folder for temporary files. Removes a
     /// file that a killed run has left there, but no other file. `memory` outlives this.
     static arrow::Result<std::unique_ptr<CompleteFile>> start(LockedFile const& unfinished,

@@ -1,4 +1,4 @@
-#include "record/descriptor_stream.hpp"
+#include "tables/descriptor_stream.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "record/leftover.hpp"
+#include "tables/leftover.hpp"
 
 #include <arrow/buffer.h>
 #include <arrow/io/file.h>
@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "base/locked_file.hpp"
-#include "record/unfinished_file.hpp"
+#include "tables/unfinished_file.hpp"
 
 namespace pogosim {
 

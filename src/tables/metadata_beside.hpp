@@ -15,9 +15,6 @@ namespace pogosim {
 
 class MetadataBeside {
 public:
-    /// The path of the metadata of a table.
-    static std::filesystem::path path_of(std::filesystem::path const& table);
-
     /// True if another program's file is there, which must not be overwritten.
     static bool is_taken(std::filesystem::path const& table);
 

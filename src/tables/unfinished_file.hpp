@@ -13,8 +13,8 @@
 #include <memory>
 #include <string_view>
 
-#include "record/descriptor_stream.hpp"
-#include "record/table_memory.hpp"
+#include "tables/descriptor_stream.hpp"
+#include "tables/table_memory.hpp"
 
 namespace pogosim {
 

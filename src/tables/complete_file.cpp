@@ -1,4 +1,4 @@
-#include "record/complete_file.hpp"
+#include "tables/complete_file.hpp"
 
 #include <arrow/io/file.h>
 #include <arrow/ipc/reader.h>
@@ -16,9 +16,10 @@
 #include <vector>
 
 #include "base/scratch_file.hpp"
-#include "record/leftover.hpp"
-#include "record/table_memory.hpp"
-#include "record/table_writer.hpp"
+#include "record/paths_beside.hpp"
+#include "tables/leftover.hpp"
+#include "tables/table_memory.hpp"
+#include "tables/table_writer.hpp"
 
 namespace pogosim {
 
@@ -77,15 +78,11 @@ CompleteFile::~CompleteFile() {
     close(descriptor_);
 }
 
-std::filesystem::path CompleteFile::path_beside(std::filesystem::path const& unfinished) {
-    return real_path(unfinished).native() + kUnfinishedSuffix;
-}
-
 arrow::Result<std::unique_ptr<CompleteFile>> CompleteFile::make(LockedFile const& unfinished) {
     auto const wrap = [](std::filesystem::path path, int descriptor) {
         return std::unique_ptr<CompleteFile>(new CompleteFile(std::move(path), descriptor));
     };
-    auto const usual = path_beside(unfinished.path());
+    auto const usual = complete_file_beside(unfinished.path());
     if (is_leftover(usual)) {
         unlink(usual.c_str());
     }

@@ -52,9 +52,6 @@ public:
     /// OutputError.
     static LockedFile reserve(TableKind const& kind, std::string const& path);
 
-    /// The file in which the metadata of a table are; none where they are in the table.
-    static std::optional<std::filesystem::path> metadata_beside(std::string const& path);
-
     /// Empties the file and writes its head.
     TableFile(TableFileOptions const& options, LockedFile file, arrow::FieldVector const& fields, TakeCells take);
 

@@ -1,4 +1,4 @@
-#include "record/parquet_module.hpp"
+#include "tables/parquet_module.hpp"
 
 #include <arrow/memory_pool.h>
 #include <arrow/record_batch.h>

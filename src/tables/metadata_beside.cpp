@@ -1,4 +1,4 @@
-#include "record/metadata_beside.hpp"
+#include "tables/metadata_beside.hpp"
 
 #include <arrow/util/key_value_metadata.h>
 #include <fcntl.h>
@@ -18,14 +18,14 @@
 
 #include "base/locked_file.hpp"
 #include "base/scratch_file.hpp"
-#include "record/descriptor_stream.hpp"
+#include "record/paths_beside.hpp"
+#include "tables/descriptor_stream.hpp"
 
 namespace pogosim {
 
 namespace {
 
 constexpr std::string_view kBegin = "# Pogosim: metadata of the table beside this file";
-constexpr auto kSuffix = ".yaml";
 constexpr mode_t kNewFile = 0666;  // less the umask
 
 /// A text as a literal block of YAML, indented by two blanks.
@@ -68,17 +68,13 @@ std::string text_of(arrow::Schema const& schema) {
 }
 
 std::filesystem::path unfinished_path_of(std::filesystem::path const& table) {
-    return MetadataBeside::path_of(table).native() + kUnfinishedSuffix;
+    return metadata_path_of(table).native() + kUnfinishedSuffix;
 }
 
 }  // namespace
 
-std::filesystem::path MetadataBeside::path_of(std::filesystem::path const& table) {
-    return real_path(table).native() + kSuffix;
-}
-
 bool MetadataBeside::is_taken(std::filesystem::path const& table) {
-    auto const path = path_of(table);
+    auto const path = metadata_path_of(table);
     std::error_code error;
     if (!std::filesystem::exists(std::filesystem::symlink_status(path, error))) {
         return false;
@@ -121,7 +117,7 @@ arrow::Result<std::unique_ptr<MetadataBeside>> MetadataBeside::write(std::filesy
 }
 
 arrow::Status MetadataBeside::belong_to(std::filesystem::path const& table) {
-    if (std::rename(path_.c_str(), path_of(table).c_str()) != 0) {
+    if (std::rename(path_.c_str(), metadata_path_of(table).c_str()) != 0) {
         return system_error(errno);
     }
     scratch_.release();

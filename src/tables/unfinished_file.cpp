@@ -1,4 +1,4 @@
-#include "record/unfinished_file.hpp"
+#include "tables/unfinished_file.hpp"
 
 #include <arrow/type.h>
 #include <arrow/util/compression.h>

@@ -1,4 +1,4 @@
-#include "record/table_memory.hpp"
+#include "tables/table_memory.hpp"
 
 #include <algorithm>
 #include <bit>
