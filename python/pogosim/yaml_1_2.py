@@ -205,4 +205,4 @@ def dump_yaml(value: Any, is_flow: bool = False, dumper: Any = ConfigurationDump
     text: str = yaml.dump(
         value, Dumper=dumper, sort_keys=False, allow_unicode=True, width=1 << 30, default_flow_style=is_flow
     )
-    return text.removesuffix("...\n")
+    return text[: -len("...\n")] if text.endswith("\n...\n") else text

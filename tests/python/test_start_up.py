@@ -6,9 +6,23 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from pogosim.simple_yaml import simple_yaml
+from pogosim.yaml_1_2 import dump_yaml
 from running import ROOT, build_folder, example, write_scene
+
+HANABI = ROOT / "examples" / "hanabi" / "hanabi.so"
+LARGE_PACKAGES = ("yaml", "elftools", "pandas", "pyarrow", "tempfile", "importlib.metadata")
+
+
+@pytest.fixture(autouse=True)
+def _installation(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
 
 
 @pytest.fixture
@@ -46,3 +60,48 @@ def test_a_missing_module_of_tables_is_told_and_needed_for_rows_alone(scene: Pat
         )
         assert run.returncode == code, run.stderr
         assert ("cannot write the data file 'data.feather' (data_filename): the module" in run.stderr) == has_rows
+
+
+# ---- Python
+
+
+def test_a_run_in_python_imports_no_large_package(scene: Path) -> None:
+    code = f"""if True:
+        import sys, pogosim
+        settings = {{"simulation_time": 1.5, "objects.robots.nb": 2, "initial_formation": "random"}}
+        with pogosim.Simulation({str(HANABI)!r}, {str(scene)!r}, seed=1, set=settings) as simulation:
+            simulation.run()
+            simulation.reset(2)
+        print([name for name in {LARGE_PACKAGES!r} if name in sys.modules])
+    """
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "[]\n"
+
+
+SIMPLE_VALUES = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(),
+    st.text(alphabet="aAeEyYnNoOfFsS01_/.+-~:# "),
+    st.sampled_from(["yes", "On", "NULL", "~", "1e3", "0x1F", ".nan", "=", "<<", "o...", "disk", "arenas/disk.csv"]),
+)
+
+
+@given(SIMPLE_VALUES)
+def test_simple_values_are_written_as_pyyaml_writes_them(value: Any) -> None:
+    text = simple_yaml(value)
+    assert text is None or text == dump_yaml(value, is_flow=True).strip()
+
+
+@pytest.mark.parametrize(
+    "value", [None, True, 50, 0.25, -3.0, "disk", "arenas/disk.csv", "/tmp/rows.feather", "two_words"]
+)
+def test_usual_values_need_no_pyyaml(value: Any) -> None:
+    assert simple_yaml(value) is not None
+
+
+def test_texts_that_end_in_dots_keep_them() -> None:
+    for text in ("o...", "...", "a b..."):
+        assert yaml.safe_load(dump_yaml(text)) == text

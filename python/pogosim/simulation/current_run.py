@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import shutil
-import tempfile
+import sys
 import threading
 from pathlib import Path
 
@@ -19,6 +18,21 @@ from pogosim.table_formats import BESIDE, CSV, EXPECTED, format_of, is_our_metad
 
 WARNING = threading.Lock()
 LONGEST_WAIT_S = 10.0  # at the end of Python, for a thread that still steps
+
+
+def temporary_folder() -> str:
+    """Return the folder for temporary files, as `tempfile` does, whose import takes longer than a short run.
+
+    Raises:
+        OSError: There is none.
+    """
+    if "tempfile" not in sys.modules:
+        chosen = Path(next(filter(None, map(os.environ.get, ("TMPDIR", "TEMP", "TMP"))), "/tmp"))
+        if chosen.is_absolute() and chosen.is_dir() and os.access(chosen, os.W_OK | os.X_OK):
+            return str(chosen)
+    import tempfile
+
+    return tempfile.gettempdir()
 
 
 class CurrentRun:
@@ -57,7 +71,7 @@ class CurrentRun:
         """
         try:
             # Its name is kept before it is made: Ctrl-C between the two leaves nothing.
-            self._folder = folder = Path(tempfile.gettempdir(), f"pogosim-{secrets.token_hex(8)}")
+            self._folder = folder = Path(temporary_folder(), f"pogosim-{os.urandom(8).hex()}")
             folder.mkdir(mode=0o700)
         except OSError as error:
             self._folder = None

@@ -21,21 +21,23 @@ from pogosim.firmware import is_firmware
 from pogosim.lines import printable
 from pogosim.nearest_name import advice
 from pogosim.outputs import PathLike
+from pogosim.simple_yaml import simple_yaml
 from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process, writable
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
-from pogosim.simulation.firmware_variables import USER_DATA, Variable, variables_of
 from pogosim.simulation.library import OVER, check, library
 from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
-from pogosim.simulation.user_data import user_data_type
 from pogosim.varied import leaves
-from pogosim.yaml_1_2 import dump_yaml
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from pogosim.simulation.firmware_variables import Variable
+
+# PyYAML, elftools and pandas are imported where they are used: a short run takes less time than importing one of them.
 
 MOST_SEED = 2**32 - 1
 MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
@@ -52,7 +54,13 @@ def yaml_text(name: str, value: Any) -> str:
     Raises:
         ConfigurationError: YAML cannot represent it.
     """
-    return dump_yaml(given.value(name, value), is_flow=True).strip()
+    plain = given.value(name, value)
+    text = simple_yaml(plain)
+    if text is None:
+        from pogosim.yaml_1_2 import dump_yaml
+
+        text = dump_yaml(plain, is_flow=True).strip()
+    return text
 
 
 def checked_settings(values: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -524,6 +532,8 @@ class Simulation:
         if is_firmware(program):
             return self._user_data_of_firmware(program)
 
+        from pogosim.simulation.user_data import user_data_type
+
         def typed() -> npt.NDArray[Any]:
             kind = user_data_type(program, int(run.number("user_data_bytes")))
             return writable(run.array("robots.user_data")).view(kind)
@@ -531,6 +541,8 @@ class Simulation:
         return run.kept_writable("user_data", typed)
 
     def _user_data_of_firmware(self, program: Path) -> npt.NDArray[Any]:
+        from pogosim.simulation.firmware_variables import USER_DATA, variables_of
+
         user_data = variables_of(program).get(USER_DATA)
         if user_data is None:
             raise NoVariableError(f"{program} has no user data (REGISTER_USERDATA)")
@@ -568,6 +580,8 @@ class Simulation:
         file = self.program if firmware is None else given.path("firmware", firmware)
         if file is None:
             raise SimulationError("the simulation has no program: name the firmware")
+        from pogosim.simulation.firmware_variables import variables_of
+
         known = variables_of(file)
         if name not in known:
             own = [other for other in known if not other.startswith("_") and not other.isupper()]  # not the library's
