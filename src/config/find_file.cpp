@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/library_folder.hpp"
+#include "config/looked_up.hpp"
 #include "config/values.hpp"
 
 namespace pogosim {
@@ -68,11 +69,6 @@ std::vector<std::string> folder_names(std::vector<std::filesystem::path> const& 
     return names;
 }
 
-bool is_folder(std::filesystem::path const& path) {
-    std::error_code ignored;
-    return std::filesystem::is_directory(path, ignored);
-}
-
 }  // namespace
 
 bool is_periodic_square(std::filesystem::path const& name) {
@@ -80,11 +76,10 @@ bool is_periodic_square(std::filesystem::path const& name) {
 }
 
 std::filesystem::path bundled_periodic_square() {
-    std::error_code ignored;
     std::filesystem::path square;
     for (std::filesystem::path const& folder : data_folders()) {
         square = folder / "arenas" / "torus.csv";
-        if (std::filesystem::exists(square, ignored)) {
+        if (look_for(square)) {
             break;
         }
     }
@@ -93,13 +88,12 @@ std::filesystem::path bundled_periodic_square() {
 
 FoundFile search_file(std::filesystem::path const& configuration, std::string const& name) {
     std::filesystem::path const path(name);
-    std::error_code ignored;
     if (path.is_absolute()) {
-        return {std::filesystem::exists(path, ignored) ? path : "", ""};
+        return {look_for(path) ? path : "", ""};
     }
     std::vector<std::filesystem::path> const folders = search_folders(configuration);
     for (std::filesystem::path const& folder : folders) {
-        if (std::filesystem::exists(folder / path, ignored)) {
+        if (look_for(folder / path)) {
             return {folder / path, ""};
         }
     }
@@ -113,7 +107,7 @@ std::filesystem::path find_file(Place const& place, std::filesystem::path const&
     if (name.empty() || found.path.empty()) {
         fail_at(place, fmt::format("there is no file '{}'{}{}", shown(name), found.searched, hint));
     }
-    if (is_folder(found.path)) {
+    if (look_for_folder(found.path)) {
         fail_at(place, fmt::format("'{}' is a folder; expected {}", shown(name), expected));
     }
     return std::move(found.path);
@@ -133,7 +127,7 @@ std::filesystem::path find_file(Scenario const& scenario, Setting setting, std::
                                       found.searched,
                                       is_arena ? ". Bundled arenas: arenas/disk.csv, arenas/square.csv, ..." : ""));
     }
-    if (is_folder(found.path)) {
+    if (look_for_folder(found.path)) {
         throw ConfigError(
             fmt::format("{}: '{}' is a folder; expected a file", place_of(scenario, setting), shown(name)));
     }

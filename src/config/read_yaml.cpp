@@ -16,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/utf8.hpp"
+#include "config/looked_up.hpp"
 #include "config/tree.hpp"
 #include "config/tree_builder.hpp"
 #include "config/values.hpp"
@@ -46,6 +47,7 @@ std::string read_text(std::string const& path) {
                 fmt::format("'{}' is larger than {} MB; this is not a configuration", path, kMaxFileBytes >> 20U));
         }
     }
+    note_text_of(path, text);
     return text;
 }
 

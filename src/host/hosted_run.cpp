@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "config/known_scenarios.hpp"
 #include "config/scenario.hpp"
 #include "firmware/firmware_program.hpp"
 #include "lamps/lamp_types.hpp"
@@ -35,7 +36,7 @@ void check_program_file(Scenario const& scenario, char const* program) {
 Scenario scenario_of(pogosim_run_options const& options) {
     std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
     bool const is_firmware = options.program != nullptr && is_firmware_file(options.program);
-    Scenario scenario = load_scenario(
+    Scenario scenario = load_known_scenario(
         options.configuration,
         {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""},
         object_types());

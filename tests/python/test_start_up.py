@@ -1,13 +1,15 @@
-"""What a start reads: nothing that the run does not need."""
+"""What a start reads: nothing that the run does not need, and nothing again that has not changed."""
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import pogosim
 import pytest
 import yaml
 from hypothesis import given
@@ -18,6 +20,7 @@ from running import ROOT, build_folder, example, write_scene
 
 HANABI = ROOT / "examples" / "hanabi" / "hanabi.so"
 LARGE_PACKAGES = ("yaml", "elftools", "pandas", "pyarrow", "tempfile", "importlib.metadata")
+NO_ROWS: dict[str, Any] = {"enable_data_logging": False}
 
 
 @pytest.fixture(autouse=True)
@@ -26,9 +29,23 @@ def _installation(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
-    """A configuration of three robots."""
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A configuration of three robots, in the working folder."""
+    monkeypatch.chdir(tmp_path)
     return write_scene(tmp_path, {"arena_file": str(ROOT / "arenas" / "disk.csv")})
+
+
+def state_after(simulation: pogosim.Simulation, steps: int = 30) -> int:
+    simulation.step(steps)
+    return simulation.state_hash
+
+
+def state_of_new(configuration: Path, seed: int = 1, **settings: Any) -> int:
+    with pogosim.Simulation(HANABI, configuration, seed=seed, set=NO_ROWS | settings) as simulation:
+        return state_after(simulation)
+
+
+# ---- Processes
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only its dynamic linker tells what it loads")
@@ -105,3 +122,162 @@ def test_usual_values_need_no_pyyaml(value: Any) -> None:
 def test_texts_that_end_in_dots_keep_them() -> None:
     for text in ("o...", "...", "a b..."):
         assert yaml.safe_load(dump_yaml(text)) == text
+
+
+# ---- Resets
+
+
+SETS_OF_KEYS: dict[str, dict[str, Any]] = {
+    "how many robots": {"objects.robots.nb": 5},
+    "speed": {"objects.robots.max_linear_speed": 40.0},
+    "shape": {"objects.robots.radius": 20.0},
+    "time step": {"time_step": 0.005},
+    "duration": {"simulation_time": 1.0},
+    "arena": {"arena_file": str(ROOT / "arenas" / "square.csv")},
+    "arena's size": {"arena_surface": 5e5},
+    "boundary": {"arena_file": str(ROOT / "arenas" / "square.csv"), "boundary_condition": "periodic"},
+    "formation": {"initial_formation": "disk"},
+    "messages": {
+        "objects.robots.communication_radius": 200.0,
+        "objects.robots.msg_success_rate": {"type": "static", "rate": 0.5},
+    },
+    "noise": {"objects.robots.linear_noise_stddev": 0.1},
+    "engine": {"physics_engine": "disk"},
+    "a lamp": {"objects.lamp": {"type": "static_light", "light_mode": "static", "geometry": "global", "value": 200}},
+    "a pillar": {"objects.pillar": {"type": "passive_object", "geometry": "disk", "radius": 30.0}},
+    "a parameter": {"parameters.turn_duration": 200},
+    "another brain": {"objects.robots.brain": "host"},
+    "a list": {"objects.robots.temporal_noise_stddev": 0.01, "data_logger_fields": ["time", "x", "y"]},
+}
+
+
+@pytest.mark.parametrize("name", SETS_OF_KEYS)
+def test_reset_with_other_keys_is_a_new_simulation_with_them(scene: Path, name: str) -> None:
+    keys = SETS_OF_KEYS[name]
+    expected = [state_of_new(scene, seed, **keys) for seed in (1, 2)]
+    assert state_of_new(scene) != expected[1]
+    with pogosim.Simulation(HANABI, scene, seed=1, set=NO_ROWS) as simulation:
+        before = state_after(simulation)
+        simulation.reset(set=keys)
+        assert state_after(simulation) == expected[0]
+        simulation.reset(2)  # the keys stay
+        assert state_after(simulation) == expected[1]
+    with pogosim.Simulation(HANABI, scene, seed=1, set=NO_ROWS) as simulation:
+        assert state_after(simulation) == before
+
+
+def test_rows_of_a_reset_with_other_keys_are_those_of_a_new_simulation(scene: Path) -> None:
+    keys = {"objects.robots.nb": 4, "save_data_period": 0.2}
+    with pogosim.Simulation(HANABI, scene, seed=1) as simulation:
+        simulation.run()
+        simulation.reset(7, keys)
+        simulation.run()
+        found = simulation.to_dataframe()
+    with pogosim.Simulation(HANABI, scene, seed=7, set=keys) as simulation:
+        simulation.run()
+        assert simulation.to_dataframe().equals(found)
+
+
+def test_a_reset_that_fails_leaves_the_keys_as_they_were(scene: Path) -> None:
+    expected = state_of_new(scene, **{"objects.robots.nb": 4})
+    with pogosim.Simulation(HANABI, scene, seed=1, set=NO_ROWS) as simulation:
+        simulation.reset(set={"objects.robots.nb": 4})
+        for wrong in ({"objects.robots.nb": "many"}, {"objects.robots.radius": 1e5}):
+            with pytest.raises(pogosim.ConfigurationError, match=next(iter(wrong))):
+                simulation.reset(2, wrong)
+        simulation.reset(1)
+        assert state_after(simulation) == expected
+
+
+def test_the_data_file_stays_in_its_place(scene: Path) -> None:
+    with pogosim.Simulation(HANABI, scene, seed=1, data_file="rows.feather") as simulation:
+        expected = state_after(simulation)
+        simulation.reset(set={"data_filename": "rows.feather"})
+        with pytest.raises(pogosim.ConfigurationError, match="data_filename cannot be changed"):
+            simulation.reset(set={"data_filename": "others.feather"})
+        assert state_after(simulation) == expected
+
+
+def replace(file: Path, old: str, new: str) -> None:
+    """Change a text in a file, whose size and times stay as they were."""
+    status = file.stat()
+    text = file.read_text(encoding="utf-8")
+    assert len(old) == len(new)
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))
+
+
+def test_reset_reads_a_configuration_that_has_changed(scene: Path) -> None:
+    with pogosim.Simulation(HANABI, scene, seed=1, set=NO_ROWS) as simulation:
+        before = state_after(simulation)
+        replace(scene, "nb: 3", "nb: 4")
+        simulation.reset()
+        assert len(simulation.positions) == 4
+        replace(scene, "nb: 4", "nb: 3")
+        simulation.reset()
+        assert state_after(simulation) == before
+        scene.write_text("arena_file: [", encoding="utf-8")
+        with pytest.raises(pogosim.ConfigurationError, match="not valid YAML"):
+            simulation.reset()
+
+
+def test_reset_reads_a_model_that_has_changed_and_one_that_comes_before(tmp_path: Path, scene: Path) -> None:
+    folder = tmp_path / "below"
+    folder.mkdir()
+    configuration = folder / scene.name
+    scene.rename(configuration)
+    model = folder / "small.yaml"
+    model.write_text("radius: 20.0\n", encoding="utf-8")
+    settings = NO_ROWS | {"objects.robots.robot_model": "small.yaml", "objects.robots.geometry": "disk"}
+    text = configuration.read_text(encoding="utf-8")
+    configuration.write_text(text.replace("radius: 26.5", "body_friction: 0.2"), encoding="utf-8")
+    with pogosim.Simulation(HANABI, configuration, seed=1, set=settings) as simulation:
+        assert simulation.radii[0] == 20.0
+        replace(model, "20.0", "21.0")
+        simulation.reset()
+        assert simulation.radii[0] == 21.0
+        (tmp_path / "small.yaml").write_text("radius: 22.0\n", encoding="utf-8")  # the working folder comes first
+        simulation.reset()
+        assert simulation.radii[0] == 22.0
+        (tmp_path / "small.yaml").unlink()
+        simulation.reset()
+        assert simulation.radii[0] == 21.0
+        model.unlink()
+        with pytest.raises(pogosim.ConfigurationError, match=r"small\.yaml"):
+            simulation.reset()
+
+
+def test_reset_reads_an_arena_that_has_changed(tmp_path: Path, scene: Path) -> None:
+    arena = tmp_path / "box.csv"
+    arena.write_text("0,0\n400,0\n400,400\n0,400\n", encoding="utf-8")
+    settings = NO_ROWS | {"arena_file": "box.csv", "arena_surface": 4e5}
+    with pogosim.Simulation(HANABI, scene, seed=1, set=settings) as simulation:
+        before = state_after(simulation)
+        arena.write_text("0,0\n800,0\n800,400\n0,400\n", encoding="utf-8")
+        simulation.reset()
+        assert state_after(simulation) != before
+        assert state_of_new(scene, arena_file="box.csv", arena_surface=4e5) != before
+
+
+def test_a_configuration_that_is_known_still_warns(scene: Path, caplog: pytest.LogCaptureFixture) -> None:
+    settings = {"objects.robots.radus": 1, "data_filename": "rows.feather"}
+    found = []
+    for _ in range(3):
+        caplog.clear()
+        with caplog.at_level(logging.DEBUG, "pogosim"), pogosim.Simulation(HANABI, scene, seed=1, set=settings):
+            found.append([record.getMessage() for record in caplog.records])
+    assert any("unknown key 'objects.robots.radus'" in line for line in found[0])
+    assert found[0] == found[1] == found[2]
+
+
+def test_a_working_folder_is_part_of_what_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    states = []
+    for width in (400, 800):
+        folder = tmp_path / str(width)
+        folder.mkdir()
+        (folder / "box.csv").write_text(f"0,0\n{width},0\n{width},400\n0,400\n", encoding="utf-8")
+        write_scene(folder, {"arena_file": "box.csv"})
+        monkeypatch.chdir(folder)
+        states.append(state_of_new(Path(next(folder.glob("*.yaml")).name)))
+    assert states[0] != states[1]

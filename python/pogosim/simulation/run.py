@@ -272,7 +272,7 @@ class Simulation:
         finally:
             self._pass_messages_on()
 
-    def reset(self, seed: int | None = None) -> None:
+    def reset(self, seed: int | None = None, set: Mapping[str, Any] | None = None) -> None:  # noqa: A002 -- its name
         """Start again with a freshly loaded program, whose variables are reset, and the parameters set so far.
 
         Arrays that were kept (`user_data`, those of a `Brain`) belong to the run before: writing to them raises
@@ -280,9 +280,17 @@ class Simulation:
 
         Args:
             seed: Seed of the new run; None: that of this one.
+            set: Values for keys of the configuration, which hold from now on, besides those that were set before. The
+                run is the same as that of a new simulation with all of them.
+
+        Raises:
+            ConfigurationError: The configuration is wrong. Reset it again: keys of this `set` are as they were before.
         """
         check_process(self._current.process)
         seed = checked_seed(seed)
+        new_settings = checked_settings(set)
+        if new_settings.get("data_filename", str(self.data_file)) != str(self.data_file):
+            raise ConfigurationError("set: data_filename cannot be changed by reset: make another simulation")
         with self._busy():
             if self._is_closed:
                 raise SimulationError(CLOSED)
@@ -290,7 +298,12 @@ class Simulation:
                 if self._current.run is not None:
                     self._current.run.retire()
                     self._end()
-                self._open(self._seed if seed is None else seed)
+                old_settings, self._settings = self._settings, {**self._settings, **new_settings}
+                try:
+                    self._open(self._seed if seed is None else seed)
+                except BaseException:
+                    self._settings = old_settings
+                    raise
             except BaseException:
                 self._current.abandon()
                 raise

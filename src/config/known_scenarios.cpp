@@ -1,0 +1,117 @@
+#include "config/known_scenarios.hpp"
+
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/log.hpp"
+#include "config/looked_up.hpp"
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kMostKnown = 16;
+constexpr std::size_t kMostBytes = 1U << 20U;  // of its files: larger ones are not kept in memory
+constexpr std::size_t kMostObjects = 10'000;
+
+/// All that the result depends on, besides the files.
+struct Question {
+    std::string path;
+    LoadOptions options;
+    std::filesystem::path folder;  // in which it was asked
+    std::string search_path;       // POGOSIM_PATH
+
+    bool operator==(Question const& other) const {
+        return path == other.path && folder == other.folder && search_path == other.search_path &&
+               options.overrides == other.options.overrides && options.strict == other.options.strict &&
+               options.strict_values == other.options.strict_values && options.thorough == other.options.thorough &&
+               options.firmware == other.options.firmware;
+    }
+};
+
+struct Known {
+    Question question;
+    LookedUp files;
+    Scenario scenario;
+    std::vector<LogLine> lines;  // that were logged
+};
+
+std::mutex mutex;  // of what follows
+std::list<std::shared_ptr<Known const>> all_known;
+
+std::shared_ptr<Known const> find(Question const& question) {
+    std::lock_guard const lock(mutex);
+    for (auto known = all_known.begin(); known != all_known.end(); ++known) {
+        if ((*known)->question == question) {
+            all_known.splice(all_known.begin(), all_known, known);
+            return all_known.front();
+        }
+    }
+    return nullptr;
+}
+
+void keep(std::shared_ptr<Known const> const& found) {
+    std::lock_guard const lock(mutex);
+    std::erase_if(all_known, [&](auto const& known) { return known->question == found->question; });
+    all_known.push_front(found);
+    if (all_known.size() > kMostKnown) {
+        all_known.pop_back();
+    }
+}
+
+void say(std::vector<LogLine> const& lines) {
+    for (LogLine const& line : lines) {
+        log().log(static_cast<spdlog::level::level_enum>(line.level), "{}", line.text);
+    }
+}
+
+/// Answers the question. Returns what load_scenario() throws.
+std::exception_ptr load(Known& found) {
+    LogOptions to_lines;
+    to_lines.verbose = true;
+    to_lines.on_line = [&](LogLine const& line) { found.lines.push_back(line); };
+    Log noted(to_lines);
+    LogScope const scope(&noted);
+    LookedUpScope const looking(found.files);
+    try {
+        found.scenario = load_scenario(found.question.path, found.question.options);
+        return nullptr;
+    } catch (...) {
+        return std::current_exception();
+    }
+}
+
+}  // namespace
+
+Scenario load_known_scenario(std::string const& path, LoadOptions const& options) {
+    std::error_code error;
+    char const* const search_path = std::getenv("POGOSIM_PATH");
+    Question const question{.path = path,
+                            .options = options,
+                            .folder = std::filesystem::current_path(error),
+                            .search_path = search_path != nullptr ? search_path : ""};
+    if (auto const known = find(question); known && known->files.is_still_there()) {
+        say(known->lines);
+        return known->scenario;
+    }
+    auto const found = std::make_shared<Known>();
+    found->question = question;
+    std::exception_ptr const failure = load(*found);
+    say(found->lines);
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+    if (!error && found->files.size() <= kMostBytes && found->scenario.objects.size() <= kMostObjects) {
+        keep(found);
+    }
+    return found->scenario;
+}
+
+}  // namespace pogosim
