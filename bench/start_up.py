@@ -18,6 +18,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+try:
+    import pogosim
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"start_up.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
 from options import at_least_one, check_built
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -68,7 +76,6 @@ def call_ms(function: Callable[..., object], *arguments: object) -> float:
 
 def show_calls(runs: int) -> None:
     """Print what simulations in this process cost."""
-    import pogosim
 
     def opened(**settings: Any) -> pogosim.Simulation:
         return pogosim.Simulation(

@@ -60,6 +60,7 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
         ("own_variables", ["many"]),
         ("reception_profile", ["--seeds", "0"]),
         ("reception_profile", ["--time", "inf"]),
+        ("start_up", ["0"]),
         ("table", ["--robots", "0"]),
         ("table", ["-o", __file__]),
         ("environments", ["5"]),
