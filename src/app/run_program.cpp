@@ -28,6 +28,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/problems.hpp"
+#include "config/known_scenarios.hpp"
 #include "config/scenario.hpp"
 #include "lamps/lamp_types.hpp"
 #include "pogosim/program.h"
@@ -83,7 +84,8 @@ LoadOptions load_options(CommandLine const& options) {
 }
 
 Scenario scenario_of(CommandLine const& options) {
-    return load_scenario(options.config, load_options(options), object_types());
+    auto const load = is_run_server() ? load_known_scenario : load_scenario;
+    return load(options.config, load_options(options), object_types());
 }
 
 Conversions conversions(CommandLine const& options) {

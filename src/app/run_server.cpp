@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -25,6 +26,7 @@
 
 #include "process/process.hpp"
 #include "process/program_memory.hpp"
+#include "record/tables_module.hpp"
 #include "robot/shared_state.hpp"
 
 namespace pogosim {
@@ -192,8 +194,18 @@ int serve_in_place(int descriptor, ProgramImage const& program, Run const& run) 
     return EXIT_SUCCESS;
 }
 
+/// What each copy would load otherwise.
+void load_what_runs_need() {
+    try {
+        tables_module();
+    } catch (std::exception const&) {
+        // Runs say it.
+    }
+}
+
 /// Each run in a copy of this process.
 int serve_copies(int descriptor, Run const& run) {
+    load_what_runs_need();
     pid_t const server = getpid();
     while (std::optional<Request> request = next_request(descriptor)) {
         pid_t const copy = fork_executable();

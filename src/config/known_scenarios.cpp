@@ -73,7 +73,7 @@ void say(std::vector<LogLine> const& lines) {
 }
 
 /// Answers the question. Returns what load_scenario() throws.
-std::exception_ptr load(Known& found) {
+std::exception_ptr load(Known& found, ObjectTypes const& types) {
     LogOptions to_lines;
     to_lines.verbose = true;
     to_lines.on_line = [&](LogLine const& line) { found.lines.push_back(line); };
@@ -81,7 +81,7 @@ std::exception_ptr load(Known& found) {
     LogScope const scope(&noted);
     LookedUpScope const looking(found.files);
     try {
-        found.scenario = load_scenario(found.question.path, found.question.options);
+        found.scenario = load_scenario(found.question.path, found.question.options, types);
         return nullptr;
     } catch (...) {
         return std::current_exception();
@@ -90,7 +90,7 @@ std::exception_ptr load(Known& found) {
 
 }  // namespace
 
-Scenario load_known_scenario(std::string const& path, LoadOptions const& options) {
+Scenario load_known_scenario(std::string const& path, LoadOptions const& options, ObjectTypes const& types) {
     std::error_code error;
     char const* const search_path = std::getenv("POGOSIM_PATH");
     Question const question{.path = path,
@@ -103,7 +103,7 @@ Scenario load_known_scenario(std::string const& path, LoadOptions const& options
     }
     auto const found = std::make_shared<Known>();
     found->question = question;
-    std::exception_ptr const failure = load(*found);
+    std::exception_ptr const failure = load(*found, types);
     say(found->lines);
     if (failure) {
         std::rethrow_exception(failure);

@@ -24,6 +24,8 @@ from pogosim.yaml_1_2 import dump_yaml
 NOT_IN_THE_WORLD = (FORMAT, COLUMNS, "optimization", CHOICES)
 LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
 
+MODULES = "libpogosim_tables*"  # that the library loads when it writes rows
+
 PYTHON = ".py"  # how the names of files end that Python runs
 
 # Every program of the simulator mentions its library, or contains it.
@@ -95,8 +97,9 @@ def program_digest(program: Path) -> str:
     if shutil.which(lister[0]):
         listed = subprocess.run([*lister, str(program)], capture_output=True, text=True, check=False, errors="replace")
         libraries = [Path(found) for found in LIBRARY.findall(listed.stdout)]
+    modules = [module for library in libraries for module in sorted(library.parent.glob(MODULES))]
     try:
-        return " ".join(digest_of(path) for path in [program, *libraries] if path.is_file())
+        return " ".join(digest_of(path) for path in [program, *libraries, *modules] if path.is_file())
     except OSError as error:
         raise cannot("read", error.filename or program, error) from None
 
