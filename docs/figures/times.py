@@ -76,6 +76,13 @@ def swarms(folder: Path) -> tuple[list[str], dict[str, Picture]]:
     return aligned((folder / "table.md").read_text().splitlines()), {"performance.png": picture}
 
 
+def batches(folder: Path) -> tuple[list[str], dict[str, Picture]]:
+    """Measure batches of short runs, and draw what a run costs."""
+    run(PYTHON, "bench/batch_runs.py", "-o", str(folder))
+    picture = Picture((folder / "batches.png").read_bytes(), "", is_exact=False)
+    return aligned((folder / "batches.md").read_text().splitlines()), {"batches.png": picture}
+
+
 def added_megabytes(packages: list[str]) -> int:
     """Return what installing Debian packages takes on a system without any, by apt."""
     with tempfile.TemporaryDirectory() as folder:
@@ -125,7 +132,7 @@ def aligned(table: list[str]) -> list[str]:
 
 TIMES = {
     "analyses": Times("../bench/README.md: analyses", printed(PYTHON, "bench/analyses.py")),
-    "batch_overhead": Times("../bench/README.md: batch_overhead", printed(PYTHON, "bench/batch_overhead.py")),
+    "batches": Times("performance.md: batches", batches),
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
     "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
     "first_start": Times("../README.md: first_start", first_start),
@@ -135,9 +142,6 @@ TIMES = {
     "machine": Times("performance.md: machine", printed(f"{BENCH}machine")),
     "million": Times("performance.md: million", printed(f"{BENCH}run_and_tumble", "--runs", "1", "1000000")),
     "own_variables": Times("../bench/README.md: own_variables", printed(PYTHON, "bench/own_variables.py")),
-    "runs_in_one_process": Times(
-        "../bench/README.md: runs_in_one_process", printed(PYTHON, "bench/runs_in_one_process.py")
-    ),
     "swarms": Times("performance.md: swarms", swarms),
     "throughput": Times("optimization.md: throughput", throughput),
 }

@@ -51,7 +51,10 @@ def rooms_below(room: str) -> set[str]:
 def symbols(room: str) -> dict[str, set[str]]:
     """Functions and variables of C++ with a name in the linker, by its letters for what they are: U is needed."""
     folder = build_folder() / "src" / "CMakeFiles" / f"pogosim_{room}.dir"
-    files = sorted(folder.rglob("*.o"))
+    # Builds leave the object files of sources that are gone.
+    files = [
+        file for file in sorted(folder.rglob("*.o")) if (SOURCE / file.relative_to(folder).with_suffix("")).exists()
+    ]
     if not files:
         pytest.skip("the object files of the rooms are not there")
     found = defaultdict(set)

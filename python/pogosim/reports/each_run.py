@@ -22,7 +22,7 @@ def for_each_run(work: Callable[[S], T], runs: Sequence[S], options: argparse.Na
         work: A function of a run, or of a run and what else belongs to it. If --jobs asks for several processes, it
             and what it returns are pickled: a function of a module, or a `functools.partial` of one.
         runs: The runs, each perhaps with what else belongs to it.
-        options: Of the command line; `jobs` is the number of processes, 1 without it.
+        options: Those of the command line; `jobs` is the number of processes, 1 without it.
         what: What is computed, for the progress bar.
 
     Returns:
