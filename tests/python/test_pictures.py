@@ -80,7 +80,8 @@ def test_every_quote_of_a_page_is_made_by_a_program() -> None:
 def test_every_picture_of_the_docs_is_made_by_a_script_and_shown_on_a_page() -> None:
     made = {name for script in SCRIPTS.values() for name in script.NAMES if name.endswith(".png")}
     made |= {name for study in STUDIES.values() for name in study.pictures}
-    made |= set(re.findall(r'"(\w+\.png)"', (ROOT / "bench" / "table.py").read_text()))
+    for benchmark in ("table", "batch_runs"):
+        made |= set(re.findall(r'"(\w+\.png)"', (ROOT / "bench" / f"{benchmark}.py").read_text()))
     assert {path.name for path in DOCS.glob("*.*g") if path.suffix in (".png", ".svg", ".jpg", ".jpeg")} == made
     pages = [ROOT / "README.md", *DOCS.glob("*.md")]
     shown = {Path(target).name for page in pages for target in re.findall(r"!\[[^]]*\]\(([^)]+)\)", page.read_text())}
