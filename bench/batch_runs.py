@@ -1,6 +1,6 @@
 """How many runs a batch does per second, and what a run costs beside its simulation.
 
-    .venv/bin/python bench/batch_runs.py [-o build/bench] [--runs 300] [--robots 20 100] [--seconds 5 40] [--workers 1 2]
+    .venv/bin/python bench/batch_runs.py [-o build/bench] [--runs 300] [--robots 20 100] [--seconds 5 40]
 
 For each number of robots of run_and_tumble and each simulated time, measures
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -20,14 +21,13 @@
 
 #ifdef __linux__
 #include <sys/prctl.h>
-
-#include <csignal>
 #endif
 
 #include "process/process.hpp"
 #include "process/program_memory.hpp"
 #include "record/tables_module.hpp"
 #include "robot/shared_state.hpp"
+#include "robot/static_objects.hpp"
 
 namespace pogosim {
 
@@ -187,7 +187,9 @@ int serve_in_place(int descriptor, ProgramImage const& program, Run const& run) 
         first.set_back();
         int const code = run(std::move(request->arguments));
         std::fflush(nullptr);
-        if (code != EXIT_SUCCESS || !reply(descriptor, code)) {
+        bool const is_repeated =
+            functions_at_end() == 0;  // as atexit() makes them: the end of the process is their time
+        if (code != EXIT_SUCCESS || !reply(descriptor, is_repeated ? code : kNotRepeated) || !is_repeated) {
             return code;
         }
     }
@@ -206,6 +208,7 @@ void load_what_runs_need() {
 /// Each run in a copy of this process.
 int serve_copies(int descriptor, Run const& run) {
     load_what_runs_need();
+    std::signal(SIGCHLD, SIG_DFL);  // else the system forgets how copies have ended
     pid_t const server = getpid();
     while (std::optional<Request> request = next_request(descriptor)) {
         pid_t const copy = fork_executable();
@@ -215,9 +218,11 @@ int serve_copies(int descriptor, Run const& run) {
             return log_to(request->log) ? run(std::move(request->arguments)) : EXIT_FAILURE;
         }
         int status = 0;
-        while (copy > 0 && waitpid(copy, &status, 0) < 0 && errno == EINTR) {
-        }
-        if (copy < 0 || status != 0 || !reply(descriptor, EXIT_SUCCESS)) {
+        pid_t ended = -1;
+        do {
+            ended = waitpid(copy, &status, 0);
+        } while (ended < 0 && errno == EINTR);
+        if (copy < 0 || ended != copy || status != 0 || !reply(descriptor, EXIT_SUCCESS)) {
             break;
         }
     }
@@ -238,7 +243,7 @@ bool is_run_server() {
 
 int serve_runs(ProgramImage const& program, Run const& run) {
     int const descriptor = take_descriptor();
-    if (held_now() != held_before_constructors) {
+    if (held_now() != held_before_constructors || !why_process_is_not_copied(program).empty()) {
         return EXIT_FAILURE;
     }
     std::string const why_copies = why_run_is_not_repeated(program);

@@ -15,10 +15,11 @@
 //     empty if none has
 //                                                             size of a request, 4 bytes;
 //                                                             file of the log, arguments, each ended by a zero
-//     exit code of the run, 4 bytes
+//     exit code of the run, 4 bytes; kNotRepeated, and
+//     the end of the server: do all runs elsewhere
 //                                                             ..., or the end of the stream: no more runs
 //
-// The server ends after a run that failed, and with it: the other side repeats this one in a process of its own.
+// After a run that failed, the server ends. The other side repeats this run in a process of its own.
 #pragma once
 
 #include <functional>
@@ -29,6 +30,7 @@
 
 namespace pogosim {
 
+inline constexpr int kNotRepeated = -1;
 inline constexpr char kServerGreeting[] = "pogosim run server 1\n";
 
 /// To be called before constructors of the user's program. Counts what the process has until then.
@@ -39,8 +41,8 @@ bool is_run_server();
 
 /// Serves runs until the end of the stream. Returns the exit code of this process, which in a copy is that of its run.
 ///
-/// Runs are not served, and there is no greeting, if constructors of the program have started threads or opened files,
-/// which are not copied, or shared by all copies.
+/// Runs are not served, and there is no greeting, for a program whose code before main() a copy would not repeat, see
+/// why_process_is_not_copied(), or has started threads, which a copy lacks, or opened files, which copies share.
 int serve_runs(ProgramImage const& program, std::function<int(std::vector<std::string> arguments)> const& run);
 
 }  // namespace pogosim

@@ -28,12 +28,7 @@ struct Question {
     std::filesystem::path folder;  // in which it was asked
     std::string search_path;       // POGOSIM_PATH
 
-    bool operator==(Question const& other) const {
-        return path == other.path && folder == other.folder && search_path == other.search_path &&
-               options.overrides == other.options.overrides && options.strict == other.options.strict &&
-               options.strict_values == other.options.strict_values && options.thorough == other.options.thorough &&
-               options.firmware == other.options.firmware;
-    }
+    bool operator==(Question const&) const = default;
 };
 
 struct Known {

@@ -159,6 +159,8 @@ struct LoadOptions {
     bool strict_values = false;            // values that would be cut, or replaced by the default, are errors
     bool thorough = false;                 // for a check, see Reading
     std::string firmware{};                // that drives robots in the place of the program; empty: none does
+
+    bool operator==(LoadOptions const&) const = default;
 };
 
 /// Reads, resolves, checks. Throws ConfigError with "file:line: key.path: expected ..., found ...", a line for each

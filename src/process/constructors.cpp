@@ -32,12 +32,14 @@ bool contains(dl_phdr_info const& object, std::uintptr_t place) {
     });
 }
 
-std::span<void (*const)()> initializers_of(dl_phdr_info const& object, ElfW(Dyn) const* entry) {
+/// The functions of an array that entries of these kinds describe: its place and its size.
+std::span<void (*const)()> functions_of(dl_phdr_info const& object, ElfW(Dyn) const* entry,
+                                        decltype(entry->d_tag) of_place, decltype(entry->d_tag) of_size) {
     std::uintptr_t place = 0;
     std::size_t bytes = 0;
     for (; entry->d_tag != DT_NULL; ++entry) {
-        place = entry->d_tag == DT_INIT_ARRAY ? object.dlpi_addr + entry->d_un.d_ptr : place;
-        bytes = entry->d_tag == DT_INIT_ARRAYSZ ? entry->d_un.d_val : bytes;
+        place = entry->d_tag == of_place ? object.dlpi_addr + entry->d_un.d_ptr : place;
+        bytes = entry->d_tag == of_size ? entry->d_un.d_val : bytes;
     }
     // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
     return {reinterpret_cast<void (*const*)()>(place), bytes / sizeof(void (*)())};
@@ -73,7 +75,9 @@ int look_at_object(dl_phdr_info* object, std::size_t /*bytes*/, void* of_search)
         // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
         auto* const begin = reinterpret_cast<std::byte*>(object->dlpi_addr + segment.p_vaddr);
         if (segment.p_type == PT_DYNAMIC) {
-            search.found.initializers = initializers_of(*object, reinterpret_cast<ElfW(Dyn) const*>(begin));
+            auto const* const entries = reinterpret_cast<ElfW(Dyn) const*>(begin);
+            search.found.initializers = functions_of(*object, entries, DT_INIT_ARRAY, DT_INIT_ARRAYSZ);
+            search.found.finalizers = functions_of(*object, entries, DT_FINI_ARRAY, DT_FINI_ARRAYSZ);
         } else if (segment.p_type == PT_LOAD && (segment.p_flags & PF_W) != 0) {
             search.found.writable.emplace_back(begin, segment.p_memsz);
         } else if (segment.p_type == PT_GNU_RELRO) {

@@ -17,6 +17,7 @@ struct LoadedObject {
     std::uintptr_t load_address = 0;  // of what its file says
     std::vector<std::span<std::byte>> writable{};
     std::span<void (*const)()> initializers{};  // called before main(), or when it was loaded
+    std::span<void (*const)()> finalizers{};    // called at the end of the process, or when it is unloaded
 };
 
 /// The object that contains a place in memory. Empty if that is not known, as on systems other than Linux.

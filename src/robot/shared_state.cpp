@@ -109,19 +109,18 @@ constexpr std::array kOwnVariables{"REGISTER_USERDATA_once"sv, "UserdataConstruc
                                    "_ZStL8__ioinit"sv, "__dso_handle"sv};
 
 /// The start of the object that a place in memory belongs to, and its file.
-struct LoadedObject {
+struct NamedObject {
     void* begin = nullptr;
     std::string_view file{};
 };
 
-LoadedObject object_of(void const* place) {
+NamedObject object_of(void const* place) {
     Dl_info info;
-    return place != nullptr && dladdr(place, &info) != 0 ? LoadedObject{info.dli_fbase, info.dli_fname}
-                                                         : LoadedObject{};
+    return place != nullptr && dladdr(place, &info) != 0 ? NamedObject{info.dli_fbase, info.dli_fname} : NamedObject{};
 }
 
-LoadedObject const& simulator() {
-    static LoadedObject const found = object_of(reinterpret_cast<void const*>(&pogosim_rand));
+NamedObject const& simulator() {
+    static NamedObject const found = object_of(reinterpret_cast<void const*>(&pogosim_rand));
     return found;
 }
 
@@ -184,6 +183,15 @@ bool leaves_no_state(std::string_view name) {
            std::ranges::binary_search(kHarmless, without_check(name));
 }
 
+/// The standard streams of C++: a program that includes <iostream> prepares them before its main(). What it prints
+/// there is another matter.
+bool is_of_streams(std::string_view name) {
+    constexpr std::array beginnings{
+        "_ZNSt8ios_base4Init"sv, "_ZSt4cout"sv, "_ZSt4cerr"sv, "_ZSt4clog"sv,  "_ZNSo"sv,
+        "_ZNKSt5ctypeIcE"sv,     "_ZStls"sv,    "_ZSt4endl"sv, "_ZSt5flush"sv, "_ZSt16__ostream_insert"sv};
+    return std::ranges::any_of(beginnings, [name](std::string_view beginning) { return name.starts_with(beginning); });
+}
+
 /// The simulator's own functions know of threads; the mathematical ones have no state, but for those that set
 /// how numbers are rounded (fesetround() and so on), and the sign that lgamma() leaves.
 bool is_of_simulator_or_mathematical(std::string const& name) {
@@ -191,7 +199,7 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
         return false;
     }
     static void* const library = dlopen(std::string(simulator().file).c_str(), RTLD_NOW | RTLD_NOLOAD);
-    LoadedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
+    NamedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
     return object.begin != nullptr &&
            (object.begin == simulator().begin || object.file.find("/libm.so") != std::string_view::npos ||
             object.file.find("/libm-") != std::string_view::npos);
@@ -299,7 +307,38 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
 }
 
 std::string why_run_is_not_repeated(ProgramImage const& image) {
-    return image.constructors ? "the program constructs static objects" : why_state_is_not_copied(image);
+    constexpr std::size_t kCompilersOwn = 1;  // in C as well, which does nothing
+    if (image.constructors) {
+        return "the program has functions that run before its main(), such as constructors of static objects";
+    }
+    if (loaded_object_at(reinterpret_cast<void const*>(image.main)).finalizers.size() > kCompilersOwn) {
+        return "the program has functions that run at its end";
+    }
+    std::vector<std::string> const imports = image.symbols().imports;
+    if (std::ranges::find(imports, "__cxa_guard_acquire") != imports.end()) {
+        return "the program has static objects in functions";
+    }
+    return why_state_is_not_copied(image);
+}
+
+std::string why_process_is_not_copied(ProgramImage const& image) {
+    if (!image.constructors) {
+        return "";
+    }
+    if (is_in_file_of_simulator(image)) {
+        return kInOneFile;
+    }
+    ProgramSymbols const symbols = image.symbols();
+    if (!symbols.are_known) {
+        return kNoSymbols;
+    }
+    for (std::string const& name : symbols.imports) {
+        if (!is_harmless_name(name) && !is_of_streams(name) && !is_of_simulator_or_mathematical(name)) {
+            return fmt::format("what runs before its main() may use '{}', which is not the same in each process",
+                               name_by_symbol(name));
+        }
+    }
+    return "";
 }
 
 std::string function_that_calls_back(ProgramImage const& image) {

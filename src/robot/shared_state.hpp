@@ -22,8 +22,13 @@ std::string why_one_after_the_other(ProgramImage const& image, std::span<BoundVa
 std::string why_state_is_not_copied(ProgramImage const& image);
 
 /// Why runs of a program cannot follow each other in one process, with its variables set back in between; empty: they
-/// can. As a state that cannot be copied, and static objects in C++, which would be constructed again.
+/// can. They cannot where a state cannot be copied, nor where there is code that runs before main() or at the end of
+/// the process, such as constructors and destructors of static objects in C++.
 std::string why_run_is_not_repeated(ProgramImage const& image);
+
+/// Why a copy of a process (fork) that has loaded the program is not as good as a new process for each run; empty: it
+/// is. Code that has run before main() may have asked for the time, for random numbers, or opened a file.
+std::string why_process_is_not_copied(ProgramImage const& image);
 
 /// A function of the C library that the program uses, and that calls the program's own code while it keeps values in
 /// memory of its own, as qsort() may; empty: there is none.

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from batches import batch, results, write_options
+from batches import batch, results, start_batch, wait_for_simulators, wait_until_gone, write_options
 from pogosim.batch import run_server
 from pogosim.batch.run import RunSettings
-from pogosim.batch.run_server import RunServer, RunServers, ServerLostError
+from pogosim.batch.run_server import NotServedError, RunServer, RunServers, ServerLostError
 from pogosim.batch.simulators import Simulators
 from pogosim.batch.temporary import TemporaryFolder
 from running import Run, compile_text, example, write_scene
@@ -144,6 +149,111 @@ def test_program_that_does_something_before_main_has_a_process_for_each_run(cons
     check_same(tmp_path, *both_ways(tmp_path, runs))
 
 
+AT_END = {
+    "atexit": ("#include <stdlib.h>\nstatic void end(void) {{ {} }}", "atexit(end);"),
+    "destructor": ("#include <stdlib.h>\n__attribute__((destructor)) static void end(void) {{ {} }}", ""),
+}
+
+
+@pytest.mark.parametrize("end", ["", "abort();"])
+@pytest.mark.parametrize("kind", sorted(AT_END))
+def test_code_at_the_end_of_the_process_runs_for_each_run(kind: str, end: str, tmp_path: Path) -> None:
+    text, init = AT_END[kind]
+    runs = program(tmp_path, includes=text.format(end), init=init)
+    shared, isolated = both_ways(tmp_path, runs)
+    check_same(tmp_path, shared, isolated)
+    assert shared.code == (3 if end else 0)
+
+
+def test_static_object_in_a_function_is_destroyed_after_each_run(tmp_path: Path) -> None:
+    text = "#include <cstdlib>\nstruct Log {{ int steps = rand(); ~Log() {{ abort(); }} }};"
+    step = "static Log one; mydata->steps += one.steps % 10;"
+    shared, isolated = both_ways(tmp_path, program(tmp_path, text.format(), step, name="main.cpp"))
+    check_same(tmp_path, shared, isolated)
+    assert shared.code == 3
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#include <random>\nstatic unsigned seed = std::random_device{}();",
+        "#include <ctime>\nstatic unsigned seed = time(nullptr);",
+        "#include <unistd.h>\nstatic unsigned seed = getpid();",
+        '#include <fstream>\nstatic unsigned seed = [] { std::ofstream("/dev/null"); return 1; }();',
+    ],
+    ids=["random device", "time", "process", "file"],
+)
+def test_program_that_asks_the_machine_before_main_has_a_process_for_each_run(text: str, tmp_path: Path) -> None:
+    runs = program(tmp_path, text, "mydata->steps += seed != 0;", name="main.cpp")
+    assert said_how(tmp_path / "how", runs) == f"{ALONE}{runs} cannot do several"
+
+
+def test_streams_of_cpp_may_be_prepared_before_main(tmp_path: Path) -> None:
+    runs = program(
+        tmp_path, "#include <iostream>", 'if (mydata->steps < 0) std::cout << "never" << std::endl;', name="main.cpp"
+    )
+    assert said_how(tmp_path / "how", runs).startswith(COPIES)
+    check_same(tmp_path, *both_ways(tmp_path, runs))
+
+
+@pytest.mark.parametrize("more", [(), ("--isolated",)])
+@pytest.mark.parametrize("includes", ["", "#include <stdlib.h>\n#include <string.h>"])
+def test_failures_are_seen_where_the_system_was_to_forget_children(
+    more: tuple[str, ...], includes: str, tmp_path: Path
+) -> None:
+    step = 'char t[] = "a"; strtok(t, "b"); __builtin_trap();' if includes else "__builtin_trap();"
+    write_options(tmp_path)
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        result = batch(tmp_path, "-r", "1", "-R", "0", *more, program=program(tmp_path, includes, step))
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+    assert result.code == 3
+
+
+def test_folder_that_is_gone_is_made_again(tmp_path: Path) -> None:
+    runs = example("helloworld")
+    servers, settings = RunServers(), settings_in(tmp_path, runs)
+    first = servers.taken([str(runs)], settings, list)
+    assert first is not None
+    servers.give_back(first)
+    shutil.rmtree(first.folder)  # as the end of a batch does
+    second = servers.taken([str(runs)], settings, list)
+    assert second is not None
+    assert second.outputs.is_dir()
+    assert first.process.poll() == 0
+    servers.give_back(second)
+    servers.close()
+
+
+HANG = "__attribute__((constructor)) static void hang(void) { for (volatile int i = 0;; ++i) {} }"
+
+
+def test_server_that_hangs_before_main_can_be_ended(tmp_path: Path) -> None:
+    runs = program(tmp_path, HANG)
+    started = []
+
+    @contextlib.contextmanager
+    def killed(process: subprocess.Popen[bytes], log: Path) -> Iterator[None]:  # noqa: ARG001
+        started.append(process)
+        process.kill()  # as the end of a batch does
+        yield
+
+    with pytest.raises(NotServedError):
+        RunServer([str(runs)], settings_in(tmp_path, runs), [], killed)
+    assert [process.returncode for process in started] == [-signal.SIGKILL]
+
+
+def test_batch_of_a_program_that_hangs_before_main_can_be_interrupted(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    process = start_batch(tmp_path, "-r", "2", "-R", "0", program=program(tmp_path, HANG))
+    assert wait_for_simulators(tmp_path, process)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    wait_until_gone(tmp_path)
+
+
 @pytest.mark.parametrize(
     "step",
     [
@@ -188,7 +298,7 @@ def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: p
     write_options(tmp_path, {"simulation_time": 0.1})
     assert batch(tmp_path, "-r", "30", "-j", "2").code == 0
     assert len(made) == 2
-    assert sum(server.runs for server in made) == 60
+    assert sum(server.served for server in made) == 60
 
 
 def test_server_is_replaced_before_what_runs_leave_adds_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -214,7 +324,7 @@ def test_server_is_gone_after_a_run_that_fails(tmp_path: Path) -> None:
     server = RunServer([str(runs)], settings_in(tmp_path, runs), [])
     path = write_scene(tmp_path, {"simulation_time": 0.1})
     server.run(["-c", str(path), "-g", "--set", f"data_filename={server.outputs}/data.feather"])
-    assert (server.runs, sorted(file.name for file in server.outputs.iterdir())) == (1, ["data.feather"])
+    assert (server.served, sorted(file.name for file in server.outputs.iterdir())) == (1, ["data.feather"])
     server.clear()
     assert list(server.outputs.iterdir()) == []
     for _ in range(2):

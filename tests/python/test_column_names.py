@@ -152,7 +152,7 @@ def test_headings_of_an_imported_formation_are_not_a_column_of_the_program(folde
 
 
 def test_rule_is_the_same_for_the_simulator_and_the_tools() -> None:
-    text = (ROOT / "src" / "record" / "columns.cpp").read_text()
+    text = (ROOT / "src" / "tables" / "columns.cpp").read_text()
     for constant, names in (("kColumnsOfRuns", NAMES), ("kKeysOfRuns", KEYS)):
         found = re.search(rf"{constant}\{{(.*?)\}}", text, re.DOTALL)
         assert found is not None

@@ -224,6 +224,7 @@ def test_jobs_of_candidates_and_of_their_runs_are_runs_at_the_same_time() -> Non
     arguments = Namespace(
         workers=None,
         scheduler=None,
+        isolated=False,
         slurm=False,
         **dict.fromkeys(
             f"slurm_{name}" for name in ("jobs", "cores", "memory", "time", "partition", "account", "option", "wait")

@@ -39,6 +39,7 @@ ARGUMENTS: dict[str, Any] = {
     "b": 1,
     "kind": "rod",
     "links": [],
+    "set": None,
 }
 
 

@@ -85,18 +85,44 @@ def test_messages_go_out_once(tmp_path: Path) -> None:
 def test_rows_of_a_run_that_begins_again_are_those_of_the_new_one(tmp_path: Path) -> None:
     with many(tmp_path) as runs:
         brain = runs.brain("robots")
-        brain.motors[:] = 300
+        brain.motors[..., :2] = [500, -500]
+        turns = brain.angular_velocity
         runs.step(20)
+        assert (turns[..., 2] != 0).all()
         runs[2].reset()
-        assert np.unique(brain.motors[2]).tolist() == [0]
-        assert np.unique(brain.motors[[0, 1, 3]]).tolist() == [300]
+        assert brain.angular_velocity is turns
+        assert (turns[2] == 0).all()
+        assert (turns[[0, 1, 3], :, 2] != 0).all()
         assert runs.step() == [1] * 4
         assert [sim.steps for sim in runs] == [21, 21, 1, 21]
-        runs.reset()
-        assert np.unique(brain.motors).tolist() == [0]
-        brain.motors[:] = 1  # before the first step of the new runs
-        runs.step(3)
-        assert np.unique(brain.motors).tolist() == [1]
+
+
+@pytest.mark.parametrize("again", [True, False])
+def test_arrays_that_are_kept_over_a_reset_drive_the_new_runs(again: bool, tmp_path: Path) -> None:
+    way_mm = []
+    with many(tmp_path) as runs:
+        motors = runs.brain("robots").motors
+        motors[..., :2] = 800
+        for _ in range(3):
+            before = runs.positions
+            if again:
+                motors[..., :2] = 800
+            runs.step(50)
+            way_mm.append(np.linalg.norm(runs.positions - before, axis=-1).mean())
+            runs.reset(range(4))
+    assert way_mm[0] > 10
+    assert way_mm == [way_mm[0]] * 3
+
+
+def test_messages_of_all_runs_are_forgotten(tmp_path: Path) -> None:
+    with many(tmp_path, arena_surface=4e4) as runs:
+        brain = runs.brain("robots")
+        brain.send_length = 1
+        runs.step(10)
+        assert brain.received_count.sum() == sum(sim.brain("robots").received_count.sum() for sim in runs) > 0
+        brain.clear_received()
+        assert brain.received_count.sum() == 0
+        assert sum(len(sim.brain("robots").received) for sim in runs) == 0
 
 
 def test_runs_that_are_over_wait_for_the_others(tmp_path: Path) -> None:
@@ -135,8 +161,16 @@ def test_what_does_not_fit_is_one_line(tmp_path: Path) -> None:
             brain.motors = np.zeros((4, 2, 3))
         with pytest.raises(pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers .* found 0\.8"):
             brain.motors = 0.8
+        for name, value in (("send_length", 1.7), ("send_face", 300), ("send_bytes", 256), ("send_length", 2**40)):
+            with pytest.raises(pogosim.ConfigurationError, match=rf"brain\.{name} takes whole numbers"):
+                setattr(brain, name, value)
         with pytest.raises(AttributeError):
             brain.motor = 3  # type: ignore[attr-defined]
+        runs[1].reset(set={"objects.robots.nb": ROBOTS + 1})
+        with pytest.raises(pogosim.ConfigurationError, match="run 1 has 4 robots in category 'robots' since its reset"):
+            runs.step()
+        runs[1].reset(set={"objects.robots.nb": ROBOTS})
+        assert runs.step() == [1] * 4
         runs.simulations[1] = pogosim.Simulation(None, path, set={"objects.robots.nb": ROBOTS + 1})
         with pytest.raises(pogosim.SimulationError, match=r"the same number of robots in each, found 3 and 4"):
             _ = runs.positions
@@ -150,6 +184,23 @@ def test_what_does_not_fit_is_one_line(tmp_path: Path) -> None:
         pytest.raises(pogosim.ConfigurationError, match="is not driven by the host"),
     ):
         run.brain("robots")
+
+
+def test_runs_in_use_are_not_closed(tmp_path: Path) -> None:
+    with many(tmp_path, simulation_time=1e6) as runs:
+        stepping = threading.Thread(target=runs[3].step, args=(50_000,))
+        stepping.start()
+        while stepping.is_alive():
+            try:
+                with runs[3]._lock:
+                    pass
+                runs.close()
+                break  # it was over
+            except pogosim.SimulationError as error:
+                assert "in use by another thread" in str(error)
+                assert runs[0].step() == 1
+                break
+        stepping.join()
 
 
 def test_no_runs_make_no_steps(tmp_path: Path) -> None:

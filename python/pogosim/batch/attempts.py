@@ -65,9 +65,10 @@ def attempt(task: Task, number: int) -> Outcome:
         OSError: A file cannot be written, or the program not be started.
         StoppedError: The batch ends.
     """
-    if task.settings.may_share_process and (outcome := attempt_in_server(task, number)) is not None:
-        return outcome
-    return attempt_alone(task, number)
+    # A run that has failed in a process of its own is repeated in one.
+    is_first = number == 0 and task.settings.may_share_process
+    outcome = attempt_in_server(task, number) if is_first else None
+    return attempt_alone(task, number) if outcome is None else outcome
 
 
 def attempt_in_server(task: Task, number: int) -> Outcome | None:
@@ -82,7 +83,8 @@ def attempt_in_server(task: Task, number: int) -> Outcome | None:
     """
     settings, replacement = task.settings, task.replacement_in(number)
     result = task.result_of(replacement)
-    with contextlib.suppress(ServerLostError), simulators.server(starting(str(settings.program)), settings) as server:
+    command = starting(str(settings.program))
+    with contextlib.suppress(ServerLostError, FileNotFoundError), simulators.server(command, settings) as server:
         if server is None:
             return None
         server.configure(configuration_in(task, server.outputs))
@@ -90,10 +92,7 @@ def attempt_in_server(task: Task, number: int) -> Outcome | None:
         with simulators.running(server.process, server.log):
             server.run(arguments_of(task, number, server.configuration))
         simulator_s = time.monotonic() - started_s
-        try:
-            (server.outputs / task.data).replace(result)
-        except FileNotFoundError:
-            raise ServerLostError from None
+        (server.outputs / task.data).replace(result)
         said = warnings_in(server.folder) if server.log.stat().st_size else ""
         server.clear()
     if not result.is_file() or (file := task.read(result, replacement)) is None:

@@ -126,6 +126,20 @@ def warn_of_others(artifacts: Sequence[TaskArtifact], expected: Expected) -> Non
         )
 
 
+def warn_of_programs(artifacts: Sequence[TaskArtifact]) -> None:
+    """Warn of runs that different programs have done, or different versions of one or of the simulator."""
+    firsts: dict[str, TaskArtifact] = {}
+    for artifact in artifacts:
+        if program := artifact.manifest.get("program_hash"):
+            firsts.setdefault(program, artifact)
+    if len(firsts) > 1:
+        log.warning(
+            "the runs were done by %d programs, or versions of them or of the simulator; the first of each: %s",
+            len(firsts),
+            ", ".join(str(artifact.folder) for artifact in firsts.values()),
+        )
+
+
 def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier: Earlier | None) -> None:
     """Warn of runs in a file of results that differ in keys which no column has."""
     firsts = [first for first, _ in by_combination(runs)]

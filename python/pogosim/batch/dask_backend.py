@@ -13,6 +13,7 @@ from typing import Any
 from pogosim.batch.attempts import do_run
 from pogosim.batch.errors import BatchError, one_line
 from pogosim.batch.run import Outcome, Task
+from pogosim.batch.simulators import simulators
 from pogosim.extras import installing
 
 CONNECT_S = 5
@@ -69,10 +70,17 @@ def dask(workers: int, scheduler: str | None) -> Iterator[Callable[[Sequence[Tas
         yield lambda tasks: outcomes_of(tasks, client)
     finally:
         with contextlib.suppress(Exception):
+            client.run(close_servers)  # in workers that stay
+        with contextlib.suppress(Exception):
             client.close(timeout=5)
         if cluster is not None:
             with contextlib.suppress(Exception):
                 cluster.close(timeout=5)
+
+
+def close_servers() -> None:
+    """End what waits for runs in a worker."""
+    simulators.close()
 
 
 def outcomes_of(

@@ -40,7 +40,11 @@ def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
 
 
 def catch_signals() -> None:
-    """Let the signals with which batch systems and terminals end a program end it in good order."""
+    """Let the signals with which batch systems and terminals end a program end it in good order.
+
+    And let the system tell how simulators have ended: a process may have been started with SIGCHLD ignored.
+    """
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, interrupt)

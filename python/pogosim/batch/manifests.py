@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import uuid
@@ -30,7 +31,7 @@ NAMESPACE = uuid.UUID("6f6a0f0e-2a43-5d1e-9d0b-7b6f676f7369")
 MOST = 2**63 - 1
 KNOWN = {
     **{"seed": LARGEST, "logical_run": MOST, "result_filename": None, "data_file": None},
-    **{"retry_attempt": MOST, "combination_ordinal": MOST, "config_hash": None},
+    **{"retry_attempt": MOST, "combination_ordinal": MOST, "config_hash": None, "program_hash": None},
 }
 NEEDED = list(KNOWN)[:4]
 
@@ -71,6 +72,7 @@ def task_entries(
         "extra_columns": for_json(combination.columns),
         "batch_choices": for_json(choices),
         "data_file": f"{FRAMES}/{task.data}",
+        "program_hash": hashlib.sha256(task.settings.program_digest.encode()).hexdigest()[:16],
         "pogosim_version": pogosim.__version__,
     }
 

@@ -17,6 +17,7 @@ from pogosim.batch.completeness import (
     warn_of_indistinguishable,
     warn_of_missing,
     warn_of_others,
+    warn_of_programs,
 )
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, given
@@ -114,6 +115,7 @@ def merge_runs(
     parts = {output: parts_of(own) for output, own in by_output.items()}
     earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
     parts = {output: numbered(own, earlier[output]) for output, own in parts.items()}
+    warn_of_programs(artifacts)
     if expected is not None:
         warn_of_others(artifacts, expected)
     missing, count = ([], 0) if append else missing_runs(by_output, expected)
@@ -128,14 +130,16 @@ def merge_runs(
 
 def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
     """Raise BatchError if a run is there twice: its seed is that of another run of its combination."""
-    known: dict[tuple[Any, ...], Path] = {}
+    known: dict[tuple[Any, ...], TaskArtifact] = {}
     for artifact in artifacts:
         seed = artifact.manifest["seed"]
-        before = known.setdefault((*artifact.combination, seed), artifact.folder)
-        if before != artifact.folder:
+        before = known.setdefault((*artifact.combination, seed), artifact)
+        if before.folder != artifact.folder:
+            programs = {own.manifest.get("program_hash") for own in (before, artifact)}
+            why = " (by different programs, or versions of one)" if len(programs) > 1 else ""
             raise BatchError(
-                f"{before} and {artifact.folder} have the same seed, {seed}, of one configuration, which would count "
-                "twice; leave one out"
+                f"{before.folder} and {artifact.folder} have the same seed, {seed}, of one configuration{why}, which "
+                "would count twice; leave one out"
             )
 
 

@@ -12,6 +12,7 @@ import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from pogosim.batch.identity import is_executable_program
@@ -24,12 +25,24 @@ LONGEST_START_S = 10.0  # until the greeting; constructors of the program may ta
 MOST_RUNS = 1000  # of one process, so that what a run may leave behind does not add up
 SIZE = struct.Struct("=I")
 CODE = struct.Struct("=i")
+NOT_REPEATED = -1  # kNotRepeated of run_server.hpp
+
+Running = Callable[[subprocess.Popen[bytes], Path], AbstractContextManager[None]]
 
 log = logging.getLogger("pogobatch")
 
 
 class ServerLostError(Exception):
     """A run did not end well, or the server did not: it is of no use any more."""
+
+
+class NotServedError(ServerLostError):
+    """The program serves no runs: an older one, or one whose runs need a process of their own."""
+
+
+def not_watched(process: subprocess.Popen[bytes], log: Path) -> AbstractContextManager[None]:  # noqa: ARG001
+    """Let a process run meanwhile."""
+    return contextlib.nullcontext()
 
 
 class RunServer:
@@ -39,6 +52,7 @@ class RunServer:
         command: The start of the program's command line, which every run has.
         settings: What all runs have in common.
         start: The start of a command line with which the process ends when this one does.
+        running: Lets the process be ended with the batch while it starts.
 
     Attributes:
         process: The process.
@@ -49,15 +63,17 @@ class RunServer:
         why_copies: Why each run has a copy of the process; empty: all are done in this one.
 
     Raises:
-        ServerLostError: The program serves no runs: an older one, or one that has started threads before its main().
+        NotServedError: The program serves no runs.
         OSError: It cannot be started.
     """
 
-    def __init__(self, command: Sequence[str], settings: RunSettings, start: Sequence[str]) -> None:
+    def __init__(
+        self, command: Sequence[str], settings: RunSettings, start: Sequence[str], running: Running = not_watched
+    ) -> None:
         temporary = settings.temporary
         self.command = tuple(command)
         self.settings = settings
-        self.runs = 0
+        self.served = 0  # runs
         self.written = ""  # into the configuration
         self.stream, other = socket.socketpair()
         with contextlib.ExitStack() as failed:
@@ -70,7 +86,7 @@ class RunServer:
             self.outputs.mkdir()
             with other, self.log.open("wb") as output:
                 self.process = subprocess.Popen(
-                    [*start, *command, "-c", self.configuration],  # for ps; a program that serves runs does not look
+                    [*start, *command, "-c", self.configuration],  # which ps shows; a server ignores it
                     cwd=settings.working_folder,
                     env=os.environ | settings.environment | {VARIABLE: str(other.fileno())},
                     pass_fds=[other.fileno()],
@@ -82,9 +98,14 @@ class RunServer:
             failed.callback(self.process.wait)
             failed.callback(self.process.kill)
             self.stream.settimeout(LONGEST_START_S)
-            if self.received(len(GREETING)) != GREETING or self.log.stat().st_size > 0:
-                raise ServerLostError  # what constructors print belongs into the log of each run
-            self.why_copies = self.line()
+            try:
+                with running(self.process, self.log):
+                    is_served = self.received(len(GREETING)) == GREETING
+                    self.why_copies = self.line()
+            except ServerLostError:
+                raise NotServedError from None
+            if not is_served or self.log.stat().st_size > 0:
+                raise NotServedError  # what constructors print belongs into the log of each run
             self.stream.settimeout(None)
             failed.pop_all()
 
@@ -134,7 +155,9 @@ class RunServer:
         except OSError:
             raise ServerLostError from None
         (code,) = CODE.unpack(self.received(CODE.size))
-        self.runs += 1
+        self.served += 1
+        if code == NOT_REPEATED:
+            raise NotServedError
         if code != 0:
             raise ServerLostError
 
@@ -164,32 +187,49 @@ class RunServers:
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.idle: list[RunServer] = []
-        self.refused: set[tuple[str, ...]] = set()  # commands of programs that serve no runs
+        self.refused: set[tuple[str, ...]] = set()  # commands and digests of programs that serve no runs
         self.told: set[str] = set()
 
     def taken(
-        self, command: Sequence[str], settings: RunSettings, start: Callable[[], Sequence[str]]
+        self,
+        command: Sequence[str],
+        settings: RunSettings,
+        start: Callable[[], Sequence[str]],
+        running: Running = not_watched,
     ) -> RunServer | None:
-        """Return a server that is free, a new one if there is none; None: the program serves no runs."""
+        """Return a server that is free, a new one if there is none; None: the program serves no runs.
+
+        Raises:
+            OSError: None can be started.
+        """
+        program = (*command, settings.program_digest)
         with self.lock:
-            if tuple(command) in self.refused:
+            if program in self.refused:
                 return None
             for server in self.idle:
                 if server.command == tuple(command) and server.settings == settings:
                     self.idle.remove(server)
-                    return server
+                    if server.outputs.is_dir():  # a worker that stays from batch to batch: the folder may be gone
+                        return server
+                    server.close()
+                    break
         try:
-            if is_executable_program(Path(command[0])):
-                server = RunServer(command, settings, start())
-                self.tell(server.why_copies)
-                return server
-        except (ServerLostError, OSError):
-            pass
+            if not is_executable_program(Path(command[0])):
+                raise NotServedError
+            server = RunServer(command, settings, start(), running)
+        except NotServedError:
+            self.refuse(command, settings)
+            return None
+        self.tell(server.why_copies)
+        return server
+
+    def refuse(self, command: Sequence[str], settings: RunSettings) -> None:
+        """Note that a program serves no runs."""
+        program = (*command, settings.program_digest)
         with self.lock:
-            if tuple(command) not in self.refused:
+            if program not in self.refused:
                 log.debug("each run is a process of its own: %s cannot do several", command[0])
-            self.refused.add(tuple(command))
-        return None
+            self.refused.add(program)
 
     def tell(self, why_copies: str) -> None:
         """Say once how the runs of a program are done."""
@@ -203,7 +243,7 @@ class RunServers:
 
     def give_back(self, server: RunServer) -> None:
         """Keep a server for the next run."""
-        if server.runs >= MOST_RUNS:
+        if server.served >= MOST_RUNS:
             server.close()
             return
         with self.lock:

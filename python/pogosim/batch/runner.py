@@ -282,8 +282,8 @@ class PogobotBatchRunner:
         self.combination_count = len(selected)
         with self.prepared():
             combinations = [self.combination_of(self.write_temp_yaml(entries), output) for entries, output in selected]
-            all_tasks = [task for combination in combinations for task in combination.tasks]
-            own = {task.key for task in all_tasks[number::parts]}
+            keys = dict.fromkeys(task.key for combination in combinations for task in combination.tasks)
+            own = set(list(keys)[number::parts])
             for combination in combinations:
                 combination.tasks = [task for task in combination.tasks if task.key in own]
             self.do_runs(self.execution_of(combinations), ())

@@ -16,7 +16,7 @@ from shutil import which
 
 from pogosim.batch.run import RunSettings
 from pogosim.batch.run_log import LOG
-from pogosim.batch.run_server import RunServer, RunServers, ServerLostError
+from pogosim.batch.run_server import VARIABLE, NotServedError, RunServer, RunServers, ServerLostError
 from pogosim.batch.running import Watch
 
 # Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
@@ -70,7 +70,7 @@ class Simulators:
             process = subprocess.Popen(
                 [*watch(), *command],
                 cwd=settings.working_folder,
-                env=os.environ | settings.environment,
+                env={**without(VARIABLE), **settings.environment},
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -95,10 +95,17 @@ class Simulators:
             settings: What all runs have in common.
 
         Raises:
+            OSError: It cannot be started.
             StoppedError: The batch ends.
         """
         with self.slots:
-            server = self.servers.taken(command, settings, watch)
+            if self.is_stopping:
+                raise StoppedError
+            server = self.servers.taken(command, settings, watch, self.running)
+            if self.is_stopping:
+                if server is not None:
+                    server.close()
+                raise StoppedError
             try:
                 yield server
             except BaseException as error:
@@ -107,6 +114,8 @@ class Simulators:
                     server.close()
                 if self.is_stopping and isinstance(error, ServerLostError):
                     raise StoppedError from None
+                if isinstance(error, NotServedError):
+                    self.servers.refuse(command, settings)
                 raise
             if server is not None:
                 self.servers.give_back(server)
@@ -136,6 +145,11 @@ class Simulators:
 
 simulators = Simulators()
 atexit.register(simulators.close)
+
+
+def without(variable: str) -> dict[str, str]:
+    """Return the environment of this process without a variable."""
+    return {name: value for name, value in os.environ.items() if name != variable}
 
 
 def kill(process: subprocess.Popen[bytes]) -> None:

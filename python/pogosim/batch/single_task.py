@@ -11,7 +11,7 @@ from typing import Any
 from pogosim.batch.attempts import attempt_in
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
-from pogosim.batch.identity import find_program
+from pogosim.batch.identity import find_program, program_digest
 from pogosim.batch.manifests import TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import file_name, new_columns
 from pogosim.batch.option_words import CHOICES, shown
@@ -186,6 +186,7 @@ def task_in(
     """Return a run whose files are in a folder."""
     path = find_program(program)
     temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
-    settings = RunSettings(path, "", configuration.path.absolute().parent, temporary, retries=0, gui=gui)
+    beside = configuration.path.absolute().parent
+    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui)
     (task,) = tasks_of(entries, [seed], settings, {})
     return replace(task, run=run_index)

@@ -173,7 +173,7 @@ def part_of(text: str) -> tuple[int, int]:
         BatchError: The text does not say it.
     """
     number, _, parts = text.partition("/")
-    if not (number.isdecimal() and parts.isdecimal() and int(number) < int(parts)):
+    if not (text.isascii() and number.isdecimal() and parts.isdecimal() and int(number) < int(parts)):
         raise BatchError(f"--part: expected N/M with N from 0 to M - 1, such as 0/40 to 39/40; found '{text}'")
     return int(number), int(parts)
 

@@ -112,7 +112,7 @@ class Brain:
 
     @send_bytes.setter
     def send_bytes(self, values: npt.ArrayLike) -> None:
-        self.send_bytes[...] = values
+        self.send_bytes[...] = whole("send_bytes", values, (0, 255), "from 0 to 255")
 
     @property
     def send_length(self) -> npt.NDArray[np.int32]:
@@ -121,7 +121,7 @@ class Brain:
 
     @send_length.setter
     def send_length(self, values: npt.ArrayLike) -> None:
-        self.send_length[...] = values
+        self.send_length[...] = whole("send_length", values, (-(2**31), 2**31 - 1), "from -1 to 382")
 
     @property
     def send_face(self) -> npt.NDArray[np.int8]:
@@ -130,7 +130,7 @@ class Brain:
 
     @send_face.setter
     def send_face(self, values: npt.ArrayLike) -> None:
-        self.send_face[...] = values
+        self.send_face[...] = whole("send_face", values, (-128, 127), "from -1 to 3")
 
     @property
     def photosensors(self) -> npt.NDArray[np.int16]:

@@ -6,6 +6,7 @@ import itertools
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager
 from contextvars import ContextVar, copy_context
 from types import TracebackType
 from typing import Any, TypeVar
@@ -116,7 +117,6 @@ class VectorSimulation:
         try:
             wait(begun)
             self.simulations = [run.result() for run in begun]
-            self._locks = [simulation._lock for simulation in self.simulations]
         except BaseException:
             self._threads.shutdown(cancel_futures=True)
             for run in begun:
@@ -181,7 +181,7 @@ class VectorSimulation:
         self._check_outside("each, step and reset")
         runs = self._runs()
         failed: dict[int, SimulationError] = {}
-        with all_held(self._locks):
+        with self._all_held():
             for brain in self._brains.values():
                 brain._write(runs)
             turns = runs.turns
@@ -200,6 +200,10 @@ class VectorSimulation:
             run = min(failed)
             raise type(failed[run])(f"run {run}: {failed[run]}")
         return [min(steps, MOST_STEPS) - left for left in turns["left"].tolist()]
+
+    def _all_held(self) -> AbstractContextManager[None]:
+        """Hold the locks of all simulations in a `with` block, see `all_held`."""
+        return all_held([simulation._lock for simulation in self.simulations])
 
     def _runs(self) -> ManyRuns:
         """Return the present runs; after a reset of one, there are others."""
@@ -292,8 +296,15 @@ class VectorSimulation:
         return np.array([simulation.is_over for simulation in self.simulations])
 
     def close(self) -> None:
-        """End all runs."""
+        """End all runs.
+
+        Raises:
+            SimulationError: Another thread uses one of them; none is closed then.
+        """
         self._check_outside("close")
+        if os.getpid() == self._process and not self._is_closed:
+            with self._all_held():
+                pass
         self._is_closed = True
         for simulation in self.simulations:
             simulation.close()

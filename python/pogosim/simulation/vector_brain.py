@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import shown
 from pogosim.simulation.brain import whole
+from pogosim.simulation.errors import ConfigurationError
+from pogosim.simulation.library import check, library
 from pogosim.simulation.many_runs import ManyRuns
 
 # Shape of a robot's row and type, by name, as of pogosim_run_brain_array().
@@ -32,10 +35,11 @@ TAKEN_BACK = "send_length"  # which a run sets to -1
 class VectorBrain:
     """The robots of a category with `brain: host` in all runs of a `VectorSimulation`: `runs.brain("robots")`.
 
-    Arrays are those of `Brain` with the runs in front: `motors` has the shape (runs, robots, 3). They are this
-    process's own: what is written is copied to the runs at the beginning of `VectorSimulation.step`, what is read from
-    them at its end, by one call for all runs, and only for arrays that were asked for. All runs need as many robots of
-    the category. After a reset, the rows of a run show the new one.
+    Arrays are those of `Brain` with the runs in front: `motors` has the shape (runs, robots, 3). But they are copies,
+    and stay valid: `VectorSimulation.step` gives all runs what is in `motors`, `leds` and messages to send, then makes
+    the steps, then takes the sensors, by one call each for all runs, and only for arrays that were asked for. So
+    values that were written hold until others are, also over a reset. `runs[3].step()`, and what `each` calls, go by
+    `runs[3].brain("robots")` alone. All runs need as many robots of the category.
 
     Messages that were received are asked for run by run: `runs[3].brain("robots").received`.
 
@@ -68,13 +72,27 @@ class VectorBrain:
         return self._arrays[name]
 
     def _follow(self, runs: ManyRuns) -> None:
-        """Show the runs that have begun anew."""
+        """Show what runs measure that have begun anew."""
         if self._seen != runs.states:
             for index, state in enumerate(runs.states):
                 if not self._seen or self._seen[index] is not state:
-                    for name, array in self._arrays.items():
-                        runs.read(name, array, self._category, index)
+                    self._take(runs, index)
             self._seen = list(runs.states)
+
+    def _take(self, runs: ManyRuns, run: int) -> None:
+        """Take what one run has measured.
+
+        Raises:
+            ConfigurationError: It has another number of robots than the others.
+        """
+        if (found := len(runs.states[run].brain_array(self._category, "motors"))) != self._robots:
+            raise ConfigurationError(
+                f"run {run} has {found} robots in category {shown(self._category)} since its reset, and the others "
+                f"{self._robots}: reset it with as many, or make another VectorSimulation"
+            )
+        for name, array in self._arrays.items():
+            if name in READ or name == TAKEN_BACK:
+                runs.read(name, array, self._category, run)
 
     def _write(self, runs: ManyRuns) -> None:
         """Give the runs what was written."""
@@ -114,7 +132,7 @@ class VectorBrain:
 
     @send_bytes.setter
     def send_bytes(self, values: npt.ArrayLike) -> None:
-        self.send_bytes[...] = values
+        self.send_bytes[...] = whole("send_bytes", values, (0, 255), "from 0 to 255")
 
     @property
     def send_length(self) -> npt.NDArray[np.int32]:
@@ -123,7 +141,7 @@ class VectorBrain:
 
     @send_length.setter
     def send_length(self, values: npt.ArrayLike) -> None:
-        self.send_length[...] = values
+        self.send_length[...] = whole("send_length", values, (-(2**31), 2**31 - 1), "from -1 to 382")
 
     @property
     def send_face(self) -> npt.NDArray[np.int8]:
@@ -132,7 +150,15 @@ class VectorBrain:
 
     @send_face.setter
     def send_face(self, values: npt.ArrayLike) -> None:
-        self.send_face[...] = values
+        self.send_face[...] = whole("send_face", values, (-128, 127), "from -1 to 3")
+
+    def clear_received(self) -> None:
+        """Forget the messages that all runs have received, see `Brain.clear_received`."""
+        runs = self._runs()
+        for state in runs.states:
+            check(library().pogosim_run_clear_received(state.pointer, self._category.encode()))
+        for index in range(len(runs.states)):
+            self._take(runs, index)
 
     @property
     def photosensors(self) -> npt.NDArray[np.int16]:
@@ -156,5 +182,5 @@ class VectorBrain:
 
     @property
     def received_count(self) -> npt.NDArray[np.uint32]:
-        """Messages received since `Brain.clear_received` of a run. Shape (runs, robots)."""
+        """Messages received since `clear_received`. Shape (runs, robots)."""
         return self._array("received_count")
