@@ -243,6 +243,7 @@ bool is_run_server() {
 
 int serve_runs(ProgramImage const& program, Run const& run) {
     int const descriptor = take_descriptor();
+    std::fflush(nullptr);  // what code before main() has printed: the other side looks for it
     if (held_now() != held_before_constructors || !why_process_is_not_copied(program).empty()) {
         return EXIT_FAILURE;
     }

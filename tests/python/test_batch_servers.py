@@ -137,11 +137,12 @@ def test_runs_of_one_process_are_those_of_processes_of_their_own(
     "constructor",
     [
         '#include <unistd.h>\n__attribute__((constructor)) static void say(void) { write(2, "hello\\n", 6); }',
+        '__attribute__((constructor)) static void say(void) { printf("hello"); }',
         '#include <fcntl.h>\n__attribute__((constructor)) static void take(void) { open("/dev/null", O_RDONLY); }',
         "#include <pthread.h>\n#include <unistd.h>\nstatic void* wait(void* p) { pause(); return p; }\n"
         "__attribute__((constructor)) static void begin(void) { pthread_t t; pthread_create(&t, 0, wait, 0); }",
     ],
-    ids=["prints", "opens", "thread"],
+    ids=["prints", "prints without a line's end", "opens", "thread"],
 )
 def test_program_that_does_something_before_main_has_a_process_for_each_run(constructor: str, tmp_path: Path) -> None:
     runs = program(tmp_path, includes=constructor)

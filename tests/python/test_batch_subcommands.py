@@ -152,6 +152,20 @@ def test_parts_together_are_the_whole(tmp_path: Path) -> None:
     ]
 
 
+def test_combinations_that_share_runs_have_them_all_after_a_merge(tmp_path: Path) -> None:
+    names = {"batch_options": ["a.feather", "b.feather"], "default_option": "a.feather"}
+    write_options(tmp_path, {"data_filename": names, "result_filename_format": "r_{data_filename}.feather"})
+    seeds = ("--seeds", "0:2")
+    assert subcommand(tmp_path, "run", *seeds).code == 0
+    for part in range(2):
+        assert subcommand(tmp_path, "run", *seeds, "-t", f"jobs/{part}", "--part", f"{part}/2").code == 0
+    merged = run_main(tmp_path, ["merge", "jobs", "-o", "merged", "-c", "many.yaml"])
+    assert (merged.code, merged.errors) == (0, "")
+    whole = {name: content for name, content in results(tmp_path).items() if name.endswith(".feather")}
+    assert {path.name: path.read_bytes() for path in (tmp_path / "merged").glob("*.feather")} == whole
+    assert len(whole) == 2
+
+
 def test_part_without_runs_is_done(tmp_path: Path) -> None:
     write_options(tmp_path)
     result = subcommand(tmp_path, "run", "--seeds", "3:3", "-t", "jobs/9", "--part", "9/10")

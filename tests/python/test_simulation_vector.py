@@ -114,6 +114,20 @@ def test_arrays_that_are_kept_over_a_reset_drive_the_new_runs(again: bool, tmp_p
     assert way_mm == [way_mm[0]] * 3
 
 
+def test_messages_are_sent_that_wait_over_a_reset(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        brain = runs.brain("robots")
+        length = brain.send_length
+        runs.reset()
+        length[:] = 1
+        runs[1].reset()
+        brain.clear_received()
+        assert (brain.send_length == 1).all()
+        runs.step(10)
+        assert [sim.messages_sent.tolist() for sim in runs] == [[1] * ROBOTS] * 4
+        assert (length == -1).all()
+
+
 def test_messages_of_all_runs_are_forgotten(tmp_path: Path) -> None:
     with many(tmp_path, arena_surface=4e4) as runs:
         brain = runs.brain("robots")

@@ -16,6 +16,7 @@ from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import config_hash
 from pogosim.batch.manifests import for_json
+from pogosim.batch.names import file_name
 from pogosim.batch.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
 from pogosim.batch.run_files import ALL_OUTPUTS, is_file_beside
@@ -48,7 +49,9 @@ class Expected:
     def __init__(self, configuration: Configuration) -> None:
         self.configuration = configuration
         self.combinations = configuration.combinations()
-        self.numbers = {config_hash(entries): number for number, entries in enumerate(self.combinations)}
+        self.numbers: dict[str, list[int]] = {}  # several that differ in the names of outputs alone have one hash
+        for number, entries in enumerate(self.combinations):
+            self.numbers.setdefault(config_hash(entries), []).append(number)
 
     @cached_property
     def single(self) -> dict[str, Any] | None:
@@ -65,9 +68,12 @@ class Expected:
 
     def number_of(self, artifact: TaskArtifact) -> int | None:
         """Return which combination a run is of; None: of none."""
-        number = self.numbers.get(str(artifact.manifest.get("config_hash", "")))
-        if number is not None or not (entries := artifact.configuration):
-            return number
+        numbers = self.numbers.get(str(artifact.manifest.get("config_hash", "")), [])
+        if len(numbers) > 1:
+            output = artifact.manifest["result_filename"]
+            numbers = [number for number in numbers if file_name(self.combinations[number]) == output] or numbers
+        if numbers or not (entries := artifact.configuration):
+            return numbers[0] if numbers else None
         found = self.known.index(own) if (own := compared(entries)) in self.known else len(self.combinations)
         return found if found < len(self.combinations) else None
 

@@ -153,8 +153,20 @@ class Execution:
             check_columns(schema, list(combination.columns), self.program, self.layout)
 
     def keep_manifest(self, task: Task, folder: str) -> None:
-        """Write down in the folder of a finished run, if it stays, what the run is."""
-        if folder:
-            number, replacement = self.first_of[task.key], self.finished[task.key].retry_attempt
-            choices = chosen_in(self.varied, number)
-            write_json(Path(folder) / TASK, task_entries(self.combinations[number], task, replacement, number, choices))
+        """Write down in the folder of a finished run, if it stays, what the run is.
+
+        Further combinations that share the run have folders of their own, which name its data file.
+        """
+        if not folder:
+            return
+        first, replacement = Path(folder), self.finished[task.key].retry_attempt
+        for number, combination in enumerate(self.combinations):
+            for own in combination.tasks:
+                if own.key == task.key:
+                    done = replace(task, run=own.run)  # whose outputs may have other names than those of `own`
+                    entries = task_entries(combination, done, replacement, number, chosen_in(self.varied, number))
+                    place = first
+                    if number != self.first_of[task.key]:
+                        place = first.with_name(f"{first.name}_as_{number}")
+                        entries["data_file"] = f"../{first.name}/{entries['data_file']}"
+                    write_json(place / TASK, entries)

@@ -282,12 +282,13 @@ class PogobotBatchRunner:
         self.combination_count = len(selected)
         with self.prepared():
             combinations = [self.combination_of(self.write_temp_yaml(entries), output) for entries, output in selected]
-            keys = dict.fromkeys(task.key for combination in combinations for task in combination.tasks)
-            own = set(list(keys)[number::parts])
+            count = 0
             for combination in combinations:
-                combination.tasks = [task for task in combination.tasks if task.key in own]
+                all_tasks, before = combination.tasks, count
+                combination.tasks = all_tasks[(number - before) % parts :: parts]
+                count += len(all_tasks)
             self.do_runs(self.execution_of(combinations), ())
-        return len(own)
+        return sum(len(combination.tasks) for combination in combinations)
 
     def do_all(self, combinations: Sequence[Combination]) -> None:
         """Do the runs that are not done yet, and write the results."""

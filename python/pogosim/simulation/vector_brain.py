@@ -85,24 +85,35 @@ class VectorBrain:
         Raises:
             ConfigurationError: It has another number of robots than the others.
         """
+        self._check_size(runs, run)
+        for name, array in self._arrays.items():
+            if name in READ:
+                runs.read(name, array, self._category, run)
+
+    def _check_size(self, runs: ManyRuns, run: int) -> None:
+        """Check that a run has as many robots as the others.
+
+        Raises:
+            ConfigurationError: It has not.
+        """
         if (found := len(runs.states[run].brain_array(self._category, "motors"))) != self._robots:
             raise ConfigurationError(
                 f"run {run} has {found} robots in category {shown(self._category)} since its reset, and the others "
                 f"{self._robots}: reset it with as many, or make another VectorSimulation"
             )
-        for name, array in self._arrays.items():
-            if name in READ or name == TAKEN_BACK:
-                runs.read(name, array, self._category, run)
 
     def _write(self, runs: ManyRuns) -> None:
         """Give the runs what was written."""
-        self._follow(runs)
+        if self._seen != runs.states:
+            for index in range(len(runs.states)):
+                self._check_size(runs, index)
         for name, array in self._arrays.items():
             if name in WRITTEN:
                 runs.write(name, array, self._category)
 
     def _read(self, runs: ManyRuns) -> None:
-        """Take what the runs have measured."""
+        """Take what the runs have measured, and which messages wait still."""
+        self._seen = list(runs.states)
         for name, array in self._arrays.items():
             if name in READ or name == TAKEN_BACK:
                 runs.read(name, array, self._category)
