@@ -46,8 +46,10 @@ class Execution:
         self.combinations = combinations
         self.configuration = configuration
         self.tasks = {task.key: task for combination in combinations for task in combination.tasks}
-        numbered = reversed(list(enumerate(combinations)))
-        self.first_of = {task.key: number for number, combination in numbered for task in combination.tasks}
+        self.uses: dict[str, list[tuple[int, Task]]] = {}  # by key: numbers of combinations, and their own tasks
+        for number, combination in enumerate(combinations):
+            for task in combination.tasks:
+                self.uses.setdefault(task.key, []).append((number, task))
         self.program = program  # its name in messages
         self.layout = layout
         self.shows_warnings = shows_warnings
@@ -121,11 +123,15 @@ class Execution:
 
     def combination_of(self, task: Task) -> Combination:
         """Return the first combination that has a run."""
-        return self.combinations[self.first_of[task.key]]
+        return self.combinations[self.first_of(task.key)]
+
+    def first_of(self, key: str) -> int:
+        """Return the number of the first combination that has a run."""
+        return self.uses[key][0][0]
 
     def failure(self, outcome: Outcome, task: Task) -> Failure:
         """Return what is said of a run that has failed."""
-        number = self.first_of[task.key]
+        number = self.first_of(task.key)
         return Failure(task, outcome, self.combinations[number].output, chosen_in(self.varied, number), number)
 
     @property
@@ -135,7 +141,7 @@ class Execution:
             Replaced(task, file.retry_attempt, self.problems.get(key, ""), self.combinations[number].output, number)
             for key, task in self.tasks.items()
             if (file := self.finished.get(key)) and file.retry_attempt
-            for number in [self.first_of[key]]
+            for number in [self.first_of(key)]
         ]
 
     @cached_property
@@ -160,13 +166,12 @@ class Execution:
         if not folder:
             return
         first, replacement = Path(folder), self.finished[task.key].retry_attempt
-        for number, combination in enumerate(self.combinations):
-            for own in combination.tasks:
-                if own.key == task.key:
-                    done = replace(task, run=own.run)  # whose outputs may have other names than those of `own`
-                    entries = task_entries(combination, done, replacement, number, chosen_in(self.varied, number))
-                    place = first
-                    if number != self.first_of[task.key]:
-                        place = first.with_name(f"{first.name}_as_{number}")
-                        entries["data_file"] = f"../{first.name}/{entries['data_file']}"
-                    write_json(place / TASK, entries)
+        for number, own in self.uses[task.key]:
+            done = replace(task, run=own.run)  # whose outputs may have other names than those of `own`
+            choices = chosen_in(self.varied, number)
+            entries = task_entries(self.combinations[number], done, replacement, number, choices)
+            place = first
+            if number != self.first_of(task.key):
+                place = first.with_name(f"{first.name}_as_{number}")
+                entries["data_file"] = f"../{first.name}/{entries['data_file']}"
+            write_json(place / TASK, entries)
