@@ -39,14 +39,15 @@ double seconds_until(Clock::time_point when) {
 }
 
 void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {
+    bool has_failed = false;
     {
         std::lock_guard const lock(run.in_use);
-        if (turn.status == POGOSIM_OK && run.is_over()) {
-            turn.status = run.has_failed() ? POGOSIM_USAGE : POGOSIM_OVER;
-            error = run.has_failed() ? "the run has failed: reset it" : "";
+        has_failed = run.has_failed();
+        if (turn.status == POGOSIM_OK && run.is_over() && !has_failed) {
+            turn.status = POGOSIM_OVER;
         }
     }
-    if (turn.left > 0 && turn.status == POGOSIM_OK) {
+    if (turn.status == POGOSIM_OK && (turn.left > 0 || has_failed)) {  // a failed run says so
         std::int64_t done = 0;
         turn.status = pogosim_run_step(&run, turn.left, budget_s, &done);
         turn.left -= done;

@@ -45,47 +45,22 @@ def whole(name: str, values: npt.ArrayLike, limits: tuple[int, int], meaning: st
     return found
 
 
-class Brain:
-    """The robots of a category whose configuration says `brain: host`: `sim.brain("robots")`.
+class BrainArrays:
+    """Arrays that drive the robots of a category, and what these measure, whatever has them.
 
-    Rows are the robots of the category, in the order of the arrays of the simulation. Between two steps, write
-    `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
-    tick, 60 times per second of its own clock, and its sensors are those of its last tick.
-
-    Arrays may be assigned, which copies values into them: `brain.motors = powers`, `brain.leds //= 2`.
-
-    Powers are integers from -1023 to 1023, to which greater ones are cut, with a warning for the first. NumPy cuts off
-    fractions without a word, so a power of 0.8 becomes 0: scale what is from -1 to 1, as in
-    `brain.motors[:, :2] = np.rint(1023 * policy)`.
-
-    Arrays belong to a run: ask for them again after `Simulation.reset`. Writing to one of the run before raises
-    ValueError (of NumPy: read-only); but not to a part of it, such as `brain.motors[:, 0]`, that was kept.
-
-        brain = sim.brain("robots")
-        while sim.step():
-            brain.motors[:, :2] = policy(brain.photosensors)
+    Shapes are those of a `Brain`, in which what is measured is read-only; a `VectorBrain` has the runs in front: (runs,
+    robots, 3) in place of (robots, 3).
     """
 
-    __slots__ = ("_category", "_run")  # a misspelt array is an error
-
-    def __init__(self, run: Callable[[], RunState], category: str) -> None:
-        self._run = run
-        self._category = given.text("category", category)
-        self._array("motors")  # raises if there is none
+    __slots__ = ()
 
     def _array(self, name: str) -> npt.NDArray[Any]:
-        return self._run().brain_array(self._category, name)
+        """Return an array by its name in the library."""
+        raise NotImplementedError
 
     def _writable(self, name: str) -> npt.NDArray[Any]:
-        run = self._run()
-        array = run.brain_array(self._category, name)
-        return run.kept_writable(f"{self._category}\0{name}", lambda: writable(array))
-
-    def __len__(self) -> int:
-        return len(self._array("motors"))
-
-    def __repr__(self) -> str:
-        return f"<pogosim.Brain of category {self._category!r}>"
+        """Return one that is to be written."""
+        return self._array(name)
 
     @property
     def motors(self) -> npt.NDArray[np.int32]:
@@ -134,28 +109,71 @@ class Brain:
 
     @property
     def photosensors(self) -> npt.NDArray[np.int16]:
-        """Sensor counts. Shape (robots, 3): back, front left, front right; -1 without a body; read-only."""
+        """Sensor counts. Shape (robots, 3): back, front left, front right; -1 without a body."""
         return self._array("photosensors")
 
     @property
     def acceleration(self) -> npt.NDArray[np.float32]:
-        """What `pogobot_imu_read` gives, m/s2. Shape (robots, 3): to the right, forward, up; read-only."""
+        """What `pogobot_imu_read` gives, m/s2. Shape (robots, 3): to the right, forward, up."""
         return self._array("acceleration")
 
     @property
     def angular_velocity(self) -> npt.NDArray[np.float32]:
-        """What `pogobot_imu_read` gives, rad/s. Shape (robots, 3); [:, 2] counter-clockwise from above; read-only."""
+        """What `pogobot_imu_read` gives, rad/s. Shape (robots, 3); [:, 2] counter-clockwise from above."""
         return self._array("angular_velocity")
 
     @property
     def battery_mv(self) -> npt.NDArray[np.int16]:
-        """Voltages of the batteries, mV. Shape (robots,); read-only."""
+        """Voltages of the batteries, mV. Shape (robots,)."""
         return self._array("battery_mv")
 
     @property
     def received_count(self) -> npt.NDArray[np.uint32]:
-        """Messages received since `clear_received`. Shape (robots,); read-only."""
+        """Messages received since `clear_received`. Shape (robots,)."""
         return self._array("received_count")
+
+
+class Brain(BrainArrays):
+    """The robots of a category whose configuration says `brain: host`: `sim.brain("robots")`.
+
+    Rows are the robots of the category, in the order of the arrays of the simulation. Between two steps, write
+    `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
+    tick, 60 times per second of its own clock, and its sensors are those of its last tick.
+
+    Arrays may be assigned, which copies values into them: `brain.motors = powers`, `brain.leds //= 2`.
+
+    Powers are integers from -1023 to 1023, to which greater ones are cut, with a warning for the first. NumPy cuts off
+    fractions without a word, so a power of 0.8 becomes 0: scale what is from -1 to 1, as in
+    `brain.motors[:, :2] = np.rint(1023 * policy)`.
+
+    Arrays belong to a run: ask for them again after `Simulation.reset`. Writing to one of the run before raises
+    ValueError (of NumPy: read-only); but not to a part of it, such as `brain.motors[:, 0]`, that was kept.
+
+        brain = sim.brain("robots")
+        while sim.step():
+            brain.motors[:, :2] = policy(brain.photosensors)
+    """
+
+    __slots__ = ("_category", "_run")  # a misspelt array is an error
+
+    def __init__(self, run: Callable[[], RunState], category: str) -> None:
+        self._run = run
+        self._category = given.text("category", category)
+        self._array("motors")  # raises if there is none
+
+    def _array(self, name: str) -> npt.NDArray[Any]:
+        return self._run().brain_array(self._category, name)
+
+    def _writable(self, name: str) -> npt.NDArray[Any]:
+        run = self._run()
+        array = run.brain_array(self._category, name)
+        return run.kept_writable(f"{self._category}\0{name}", lambda: writable(array))
+
+    def __len__(self) -> int:
+        return len(self._array("motors"))
+
+    def __repr__(self) -> str:
+        return f"<pogosim.Brain of category {self._category!r}>"
 
     @property
     def received(self) -> npt.NDArray[Any]:

@@ -216,8 +216,13 @@ def check(status: int) -> int:
     """
     if status in (OK, OVER):
         return status
-    message = printable(library().pogosim_host_error().decode("utf-8", "replace"))
-    raise (ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError)(message)
+    raise error_of(status, library().pogosim_host_error())
+
+
+def error_of(status: int, message: bytes) -> SimulationError:
+    """Return the error that a status of the library stands for."""
+    kind = ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError
+    return kind(printable(message.decode("utf-8", "replace")))
 
 
 class OpenRun:

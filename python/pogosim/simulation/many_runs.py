@@ -13,13 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.lines import printable
 from pogosim.simulation.arrays import RunState
-from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
-from pogosim.simulation.library import OK, OVER, PROGRAM_FAILED, Turn, check, library
-from pogosim.simulation.run import SLICE_S
+from pogosim.simulation.errors import SimulationError
+from pogosim.simulation.library import OK, OVER, Turn, check, error_of, library
+from pogosim.simulation.run import FAILED_BEFORE, SLICE_S
 
-FAILED_BEFORE = "the run has failed: reset it"
 IN_USE = "a simulation is in use by another thread: give each thread one of its own"
 
 
@@ -55,15 +53,13 @@ class RunThreads:
         found = {}
         for run in failed.tolist():
             if text := library().pogosim_threads_error(self._handle, run):
-                found[run] = failure(int(turns["status"][run]), printable(text.decode("utf-8", "replace")))
+                found[run] = failure(int(turns["status"][run]), text)
         return found
 
 
-def failure(status: int, message: str) -> SimulationError:
+def failure(status: int, message: bytes) -> SimulationError:
     """Return the error of a run."""
-    if message == FAILED_BEFORE:
-        return SimulationError(message)
-    return (ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError)(message)
+    return SimulationError(FAILED_BEFORE) if message == FAILED_BEFORE.encode() else error_of(status, message)
 
 
 class ManyRuns:

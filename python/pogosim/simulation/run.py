@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 MOST_SEED = 2**32 - 1
 MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
+FAILED_BEFORE = "the run has failed: reset it"  # as the library says it
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
@@ -243,7 +244,7 @@ class Simulation:
             steps = min(steps, MOST_STEPS)
             is_over = bool(run.number("is_over"))
             if is_over and run.number("has_failed"):
-                raise SimulationError("the run has failed: reset it")
+                raise SimulationError(FAILED_BEFORE)
             while made < steps and not is_over and not self._current.should_pause:
                 done = c_int64()
                 try:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.simulation.brain import whole
+from pogosim.simulation.brain import BrainArrays
 from pogosim.simulation.errors import ConfigurationError
 from pogosim.simulation.library import check, library
 from pogosim.simulation.many_runs import ManyRuns
@@ -32,7 +32,7 @@ READ: dict[str, tuple[tuple[int, ...], str]] = {
 TAKEN_BACK = "send_length"  # which a run sets to -1
 
 
-class VectorBrain:
+class VectorBrain(BrainArrays):
     """The robots of a category with `brain: host` in all runs of a `VectorSimulation`: `runs.brain("robots")`.
 
     Arrays are those of `Brain` with the runs in front: `motors` has the shape (runs, robots, 3). But they are copies,
@@ -118,51 +118,6 @@ class VectorBrain:
             if name in READ or name == TAKEN_BACK:
                 runs.read(name, array, self._category)
 
-    @property
-    def motors(self) -> npt.NDArray[np.int32]:
-        """Powers, -1023 to 1023, positive is forward. Shape (runs, robots, 3): right, left, back; to be written."""
-        return self._array("motors")
-
-    @motors.setter
-    def motors(self, values: npt.ArrayLike) -> None:
-        self.motors[...] = whole("motors", values, (-(2**31), 2**31 - 1), "from -1023 to 1023")
-
-    @property
-    def leds(self) -> npt.NDArray[np.uint8]:
-        """Colours of the LEDs. Shape (runs, robots, 5, 3): head, front, right, back, left; to be written."""
-        return self._array("leds")
-
-    @leds.setter
-    def leds(self, values: npt.ArrayLike) -> None:
-        self.leds[...] = whole("leds", values, (0, 255), "from 0 to 255")
-
-    @property
-    def send_bytes(self) -> npt.NDArray[np.uint8]:
-        """Messages to send, in the first `send_length` bytes. Shape (runs, robots, 382); to be written."""
-        return self._array("send_bytes")
-
-    @send_bytes.setter
-    def send_bytes(self, values: npt.ArrayLike) -> None:
-        self.send_bytes[...] = whole("send_bytes", values, (0, 255), "from 0 to 255")
-
-    @property
-    def send_length(self) -> npt.NDArray[np.int32]:
-        """Bytes to send, 0 to 382, -1: none; set back to -1 when they are sent. Shape (runs, robots); to be written."""
-        return self._array("send_length")
-
-    @send_length.setter
-    def send_length(self, values: npt.ArrayLike) -> None:
-        self.send_length[...] = whole("send_length", values, (-(2**31), 2**31 - 1), "from -1 to 382")
-
-    @property
-    def send_face(self) -> npt.NDArray[np.int8]:
-        """Where to: 0 front, 1 right, 2 back, 3 left, -1 in all directions. Shape (runs, robots); to be written."""
-        return self._array("send_face")
-
-    @send_face.setter
-    def send_face(self, values: npt.ArrayLike) -> None:
-        self.send_face[...] = whole("send_face", values, (-128, 127), "from -1 to 3")
-
     def clear_received(self) -> None:
         """Forget the messages that all runs have received, see `Brain.clear_received`."""
         runs = self._runs()
@@ -170,28 +125,3 @@ class VectorBrain:
             check(library().pogosim_run_clear_received(state.pointer, self._category.encode()))
         for index in range(len(runs.states)):
             self._take(runs, index)
-
-    @property
-    def photosensors(self) -> npt.NDArray[np.int16]:
-        """Sensor counts. Shape (runs, robots, 3): back, front left, front right; -1 without a body."""
-        return self._array("photosensors")
-
-    @property
-    def acceleration(self) -> npt.NDArray[np.float32]:
-        """What `pogobot_imu_read` gives, m/s2. Shape (runs, robots, 3): to the right, forward, up."""
-        return self._array("acceleration")
-
-    @property
-    def angular_velocity(self) -> npt.NDArray[np.float32]:
-        """What `pogobot_imu_read` gives, rad/s. Shape (runs, robots, 3); the last counter-clockwise from above."""
-        return self._array("angular_velocity")
-
-    @property
-    def battery_mv(self) -> npt.NDArray[np.int16]:
-        """Voltages of the batteries, mV. Shape (runs, robots)."""
-        return self._array("battery_mv")
-
-    @property
-    def received_count(self) -> npt.NDArray[np.uint32]:
-        """Messages received since `clear_received`. Shape (runs, robots)."""
-        return self._array("received_count")
