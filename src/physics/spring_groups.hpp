@@ -27,7 +27,7 @@ struct SpringGroup {
     std::uint32_t row_a = 0;
     std::uint32_t row_b = 0;
     std::uint32_t shift = 0;  // lane l has the dot of lane (l + shift) % 4 of row_b
-    // Of joints; 0 in lanes without a spring.
+    // Values of the joints; 0 in lanes without a spring.
     Four length_mm{};
     Four longest_mm{};  // 0: no limit
     Four stiffness_hz{};

@@ -1,12 +1,7 @@
 #include "record/data_file.hpp"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
 #include <utility>
 
-#include "base/error.hpp"
-#include "base/memory.hpp"
 #include "record/tables_module.hpp"
 
 namespace pogosim {
@@ -14,13 +9,7 @@ namespace pogosim {
 namespace {
 
 TablesModule const& module_for(std::string const& path) {
-    try {
-        return tables_module();
-    } catch (OutOfMemory const&) {
-        throw;
-    } catch (std::runtime_error const& error) {
-        throw OutputError(fmt::format("cannot write the data file '{}' (data_filename): {}", path, error.what()));
-    }
+    return tables_module_to_write("data file", path, "data_filename");
 }
 
 }  // namespace

@@ -60,6 +60,16 @@ TablesModule const& tables_module() {
     return *module;
 }
 
+TablesModule const& tables_module_to_write(char const* what, std::string const& path, char const* key) {
+    try {
+        return tables_module();
+    } catch (OutOfMemory const&) {
+        throw;
+    } catch (std::runtime_error const& error) {
+        throw OutputError(fmt::format("cannot write the {} '{}' ({}): {}", what, path, key, error.what()));
+    }
+}
+
 void throw_if_failed(TablesCall const& call) {
     switch (call.error) {
         case TablesCall::Error::none:

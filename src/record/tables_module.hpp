@@ -97,6 +97,10 @@ inline constexpr char const* kTablesModuleFile = "libpogosim_tables-" POGOSIM_VE
 /// not possible.
 TablesModule const& tables_module();
 
+/// The same for a file that is to be written, a `what` that the configuration calls `key`. Throws OutputError with its
+/// path if the module cannot be loaded, OutOfMemory if memory is short.
+TablesModule const& tables_module_to_write(char const* what, std::string const& path, char const* key);
+
 /// For executables that the room `tables` is a part of, such as tests: nothing is loaded then.
 void link_tables_module(GetTablesModule get_module);
 

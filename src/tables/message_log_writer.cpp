@@ -18,7 +18,7 @@ constexpr TableKind kKind{.name = "message log", .key = "message_log", .how_to_d
 
 constexpr std::array<std::string_view, 4> kOutcomes{"heard", "lost", "queue_full", "malformed"};
 constexpr std::array<std::string_view, 4> kTypes{"long", "short", "command", "other"};
-constexpr std::string_view kNobodyInReach = "nobody_in_reach";
+constexpr std::string_view kNoRobotInReach = "nobody_in_reach";
 
 /// Appends the cells of a robot, or nulls.
 struct RobotCells {
@@ -117,7 +117,7 @@ struct Cells {
                                            static_cast<std::int32_t>(row.payload.size())));
         ARROW_RETURN_NOT_OK(message_bytes.Append(row.message_bytes));
         ARROW_RETURN_NOT_OK(send_probability.Append(row.send_probability));
-        return row.reception ? append(*row.reception) : append_nobody();
+        return row.reception ? append(*row.reception) : append_no_receiver();
     }
 
     Status append(LoggedReception const& reception) {
@@ -131,14 +131,14 @@ struct Cells {
         return copies.Append(reception.copies);
     }
 
-    Status append_nobody() {
+    Status append_no_receiver() {
         ARROW_RETURN_NOT_OK(cluster_size.Append(1));
         ARROW_RETURN_NOT_OK(receiver.append_null());
         ARROW_RETURN_NOT_OK(distance.AppendNull());
         ARROW_RETURN_NOT_OK(emitters.AppendNull());
         ARROW_RETURN_NOT_OK(receiver_faces.AppendNull());
         ARROW_RETURN_NOT_OK(probability.AppendNull());
-        ARROW_RETURN_NOT_OK(outcome.Append(kNobodyInReach));
+        ARROW_RETURN_NOT_OK(outcome.Append(kNoRobotInReach));
         return copies.Append(0);
     }
 };
