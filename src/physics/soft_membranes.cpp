@@ -151,7 +151,7 @@ void SoftMembranes::forget_impulses() {
 
 void SoftMembranes::keep_impulses(std::span<SpringImpulse> impulses) const {
     for (Added const& added : added_) {
-        Springs const* springs = &springs_[added.first_spring];
+        Springs const* springs = springs_.data() + added.first_spring;
         for (SpringGroup const& group : grouped_[added.membrane].groups()) {
             for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
                 if (group.joint[lane] != kNone) {

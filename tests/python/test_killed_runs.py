@@ -164,7 +164,7 @@ def test_recovered_file_is_a_feather_file_with_all_rows_and_metadata(
     before = recover.read_unfinished(path).table.schema.metadata
     code, output, errors = recovered(capsys, path)
     assert (code, errors) == (0, "")
-    assert output == f"{path}: {len(rows)} rows, up to t = {rows['time'].max():g} s\n"
+    assert output == f"{path}: {len(rows)} rows, up to t = {rows['time'].max():.9g} s\n"
     pd.testing.assert_frame_equal(pd.read_feather(path), rows)
     after = read_table(path).schema.metadata
     assert b"did not end by itself" in after[b"recovered"]
