@@ -10,19 +10,19 @@ from typing import Any
 
 import pytest
 from pogosim.batch.errors import BatchError
+from pogosim.batch.jobqueue import idle as idle_of
+from pogosim.batch.jobqueue import own_folder, with_keys
 from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.slurm import (
     SlurmWorkers,
     bytes_of,
     close,
-    idle_jobs,
     job_settings,
     log_folder,
     slurm,
     started,
-    with_keys,
 )
-from pogosim.batch.slurm_jobs import LOST_PER_JOB, Jobs, own_folder
+from pogosim.batch.slurm_jobs import LOST_PER_JOB, Jobs
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.temporary import TemporaryFolder
 
@@ -90,7 +90,7 @@ def test_job_has_one_hour_and_two_gigabytes_per_core_by_default() -> None:
     assert (settings["walltime"], settings["job_mem"], settings["memory"]) == ("01:00:00", "6G", 6 * 1024**3)
     assert (settings["queue"], settings["account"]) == (None, None)
     assert (settings["log_directory"], settings["job_extra_directives"]) == ("/logs", [])
-    assert settings["worker_extra_args"] == ["--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.slurm_worker"]
+    assert settings["worker_extra_args"] == ["--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.in_job"]
 
 
 def test_site_says_what_a_job_is_where_the_user_does_not() -> None:
@@ -313,12 +313,9 @@ def test_patience_is_for_the_first_job_only(commands: Commands) -> None:
     ],
 )
 def test_job_is_idle_when_all_runs_that_are_left_are_being_done_in_others(
-    assigned: dict[str, int], left: int, idle: list[str], commands: Commands
+    assigned: dict[str, int], left: int, idle: list[str]
 ) -> None:
-    jobs = jobs_of(commands, wanted=3, cores=2)
-    workers = {name: SimpleNamespace(name=name, processing=range(count)) for name, count in assigned.items()}
-    cluster = SimpleNamespace(scheduler=SimpleNamespace(workers=workers))
-    assert idle_jobs(cluster, jobs, left) == idle
+    assert idle_of(["1", "2", "3"], assigned, 2, left) == idle
 
 
 @pytest.mark.parametrize("problem", ["", "exit code 3"])

@@ -1,4 +1,4 @@
-"""Where runs are done: one after the other, in parallel on this machine, by Dask, or by jobs of SLURM.
+"""Where runs are done: one after the other, in parallel on this machine, by Dask, or by jobs of a batch system.
 
 A backend is opened once, and then does runs, as often as it is asked to. It yields their outcomes in the order in which
 they end. When that is closed before, it ends what is running.
@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from pogosim.batch.attempts import do_run
 from pogosim.batch.errors import BatchError, at_least
+from pogosim.batch.jobqueue_options import QueuedJobs
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.simulators import simulators
 from pogosim.batch.slurm_options import CORES, SlurmJobs
@@ -39,7 +40,7 @@ class Workers:
         backend: "multiprocessing", "sequential" or "dask" ("ray" means dask).
         number: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
-        slurm_jobs: Jobs of SLURM that do the runs.
+        jobs: Jobs of SLURM, or of another batch system, that do the runs.
         is_isolated: Each run is a process of its own; else, one process may do many, one after the other.
 
     Raises:
@@ -49,7 +50,7 @@ class Workers:
     backend: str = "multiprocessing"
     number: int | None = None
     scheduler: str | None = None
-    slurm_jobs: SlurmJobs | None = None
+    jobs: SlurmJobs | QueuedJobs | None = None
     is_isolated: bool = False
 
     def __post_init__(self) -> None:
@@ -58,25 +59,26 @@ class Workers:
             raise BatchError(f"--backend: expected one of {known}; found '{self.backend}'")
         if self.scheduler is not None and self.backend == "sequential":
             raise BatchError(f"--scheduler goes with --backend dask, not with --backend {self.backend}")
-        if self.slurm_jobs is not None and (
+        if self.jobs is not None and (
             self.backend != "multiprocessing" or self.number is not None or self.scheduler is not None
         ):
-            raise BatchError("--slurm goes without --backend, --scheduler and --workers; see --slurm-jobs")
+            flag = self.jobs.flag
+            raise BatchError(f"{flag} goes without --backend, --scheduler and --workers; see {flag}-jobs")
         if self.number is not None:
             at_least(1, self.number, "--workers")
 
     @property
     def count(self) -> int:
         """Runs at the same time; of a Dask scheduler, as many as this machine would do."""
-        if self.slurm_jobs is not None:
-            return self.slurm_jobs.jobs * (self.slurm_jobs.cores or CORES)
+        if self.jobs is not None:
+            return self.jobs.jobs * (self.jobs.cores or CORES)
         return processors() if self.number is None else self.number
 
     @property
     def name(self) -> str:
-        """What does the runs: "slurm", "dask" or another backend."""
-        if self.slurm_jobs is not None:
-            return "slurm"
+        """What does the runs: a batch system ("slurm", "pbs", ...), "dask" or another backend."""
+        if self.jobs is not None:
+            return self.jobs.system
         return "dask" if self.scheduler is not None or self.backend == "ray" else self.backend
 
     @property
@@ -88,15 +90,19 @@ class Workers:
         """Return what does runs until it is closed.
 
         Args:
-            keep_idle: Keep jobs of SLURM that have nothing to do, for runs that are still to come.
+            keep_idle: Keep jobs that have nothing to do, for runs that are still to come.
 
         Raises:
             BatchError: It cannot be had.
         """
-        if self.slurm_jobs is not None:
+        if isinstance(self.jobs, SlurmJobs):
             from pogosim.batch.slurm import slurm
 
-            return slurm(self.slurm_jobs, keep_idle)
+            return slurm(self.jobs, keep_idle)
+        if self.jobs is not None:
+            from pogosim.batch.jobqueue import jobqueue
+
+            return jobqueue(self.jobs, keep_idle)
         if self.backend == "ray":
             log.warning("--backend ray is replaced by --backend dask")
         return BACKENDS["dask" if self.scheduler is not None else self.backend](self)

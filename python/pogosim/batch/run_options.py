@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pogosim.arguments import is_text
 from pogosim.batch.errors import BatchError, NoProgramError, at_least
+from pogosim.batch.jobqueue_options import add_jobqueue_options, asked_jobs
 from pogosim.batch.seeds import seeds_between
-from pogosim.batch.slurm_options import add_slurm_options, slurm_jobs
+from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.lines import say_error
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
     add("--backend", default="multiprocessing", help="multiprocessing (default), sequential or dask")
     add("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
     add_slurm_options(options)
+    add_jobqueue_options(options)
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
     add("--isolated", action="store_true", help=ISOLATED)
     add("--gui", action="store_true", help="let each run open its window")
@@ -181,7 +183,7 @@ def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchR
         seed_from=arguments.seed_from,
         workers=workers,
         scheduler=arguments.scheduler,
-        slurm_jobs=slurm_jobs(arguments),
+        jobs=asked_jobs(arguments),
         seeds=asked_seeds(arguments),
         retry_new_seed=is_campaign if arguments.retry_new_seed is None else arguments.retry_new_seed,
         with_seeds=is_campaign,

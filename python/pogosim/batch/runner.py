@@ -16,6 +16,7 @@ from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, tell
 from pogosim.batch.execution import Execution
 from pogosim.batch.identity import find_program, program_digest, seed_of
+from pogosim.batch.jobqueue_options import QueuedJobs
 from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, new_columns
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
@@ -63,7 +64,7 @@ class PogobotBatchRunner:
             `seed` and the number.
         workers: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
-        slurm_jobs: Jobs of SLURM that do the runs.
+        jobs: Jobs of SLURM, or of another batch system, that do the runs.
         seeds: Seed of each run; None: as `seed_from` says; CONFIGURED: those of `_rundr` in the configuration, or else
             one run.
         retry_new_seed: Repeat a failed run with another seed, see `pogosim.batch.seeds.replacements`; otherwise, with
@@ -103,7 +104,7 @@ class PogobotBatchRunner:
         seed_from: str = "run",
         workers: int | None = None,
         scheduler: str | None = None,
-        slurm_jobs: SlurmJobs | None = None,
+        jobs: SlurmJobs | QueuedJobs | None = None,
         seeds: Iterable[int] | str | None = None,
         retry_new_seed: bool = False,
         with_seeds: bool = False,
@@ -127,7 +128,7 @@ class PogobotBatchRunner:
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
-        self.workers = Workers(backend, workers, scheduler, slurm_jobs, isolated)
+        self.workers = Workers(backend, workers, scheduler, jobs, isolated)
         self.keep_temp = keep_temp
         self.verbose = verbose
         self.retries = at_least(0, retries, "--retries")

@@ -9,25 +9,30 @@ from __future__ import annotations
 import atexit
 import contextlib
 import hashlib
-import importlib
 import logging
 import shutil
-import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
+from pogosim.batch.in_job import do_in_job
+from pogosim.batch.jobqueue import (
+    LOSSES_PER_RUN,
+    forget_keys,
+    idle,
+    imported_jobqueue,
+    own_folder,
+    runs_of_workers,
+    site_settings,
+    with_keys,
+)
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.slurm_jobs import Jobs, check_commands, own_folder
+from pogosim.batch.slurm_jobs import Jobs, check_commands
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
-from pogosim.batch.slurm_worker import do_in_job
-from pogosim.extras import installing
 from pogosim.lines import counted
 
-LOSSES_PER_RUN = 5
-ROLES = ("scheduler", "worker", "client")
 POWERS = {"K": 1, "": 2, "M": 2, "G": 3, "T": 4}
 
 
@@ -77,7 +82,7 @@ class SlurmWorkers:
     def start(self, tasks: Sequence[Task]) -> None:
         """Start the scheduler, and submit the jobs."""
         dask, distributed = imported("--slurm", "slurm")
-        jobqueue = imported_jobqueue()
+        jobqueue = imported_jobqueue("--slurm")
         check_commands()
         self.first_task = tasks[0]
         self.cluster, self.jobs = started(dask, distributed, jobqueue, tasks, self.request)
@@ -93,7 +98,7 @@ class SlurmWorkers:
         def poll() -> None:
             jobs.poll(left)
             if not self.keep_idle:
-                jobs.release(idle_jobs(self.cluster, jobs, left))
+                jobs.release(idle(jobs.states, runs_of_workers(self.cluster), jobs.cores, left))
 
         ended = outcomes_of(tasks, self.client, poll, do_in_job)
         try:
@@ -119,23 +124,6 @@ class SlurmWorkers:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def imported_jobqueue() -> Any:
-    """Return the package dask_jobqueue.
-
-    Raises:
-        BatchError: It, or what its encryption needs, is not installed.
-    """
-    on_interrupt = signal.getsignal(signal.SIGINT)
-    try:
-        importlib.import_module("cryptography")
-        return importlib.import_module("dask_jobqueue")
-    except ImportError as error:
-        package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
-        raise BatchError(f"--slurm needs the Python package '{package}'; install it: {installing('slurm')}") from None
-    finally:
-        signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
-
-
 def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], request: SlurmJobs) -> tuple[Any, Jobs]:
     """Start the scheduler and submit the jobs.
 
@@ -143,7 +131,7 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
         BatchError: It cannot be started, or SLURM refuses the jobs.
     """
     task = tasks[0]
-    site = site_settings(dask)
+    site = site_settings(dask, "slurm")
     cores = request.cores or site.get("cores") or CORES
     folder = own_folder(log_folder(task))
     settings = job_settings(request, site, cores, folder)
@@ -178,24 +166,6 @@ def jobs_for(tasks: Sequence[Task], request: SlurmJobs, cores: int) -> int:
     return min(request.jobs, -(-len(tasks) // cores))
 
 
-def with_keys(security: Any, folder: Path) -> Any:
-    """Return the security of connections with keys of this batch alone, which are files that workers read."""
-    made = security.temporary().get_tls_config_for_role("worker")
-    paths = {name: folder / f"tls_{name}.pem" for name in ("ca_file", "cert", "key")}
-    for name, path in paths.items():
-        path.unlink(missing_ok=True)
-        path.touch(mode=0o600)
-        path.write_text(made[name])
-    pairs = {f"tls_{role}_{name}": str(paths[name]) for role in ROLES for name in ("cert", "key")}
-    return security(require_encryption=True, tls_ca_file=str(paths["ca_file"]), **pairs)
-
-
-def site_settings(dask: Any) -> dict[str, Any]:
-    """Return what the site and the user say about SLURM in jobqueue.yaml, or in the environment."""
-    entries = (dask.config.collect().get("jobqueue") or {}).get("slurm") or {}
-    return {key.replace("_", "-"): value for key, value in entries.items() if value is not None}
-
-
 def job_settings(request: SlurmJobs, site: dict[str, Any], cores: int, folder: Path) -> dict[str, Any]:
     """Return the arguments of SLURMCluster that say what a job is."""
     settings: dict[str, Any] = {
@@ -210,7 +180,7 @@ def job_settings(request: SlurmJobs, site: dict[str, Any], cores: int, folder: P
         # The worker has the name of its job.
         "worker_extra_args": [
             *(site.get("worker-extra-args") or []),
-            *("--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.slurm_worker"),
+            *("--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.in_job"),
         ],
     }
     memory = request.memory or (None if "memory" in site else f"{MEMORY_PER_CORE_GB * cores}G")
@@ -240,19 +210,10 @@ def job_name(task: Task) -> str:
     return f"pogobatch-{hashlib.sha256(str(task.settings.temporary.done).encode()).hexdigest()[:8]}"
 
 
-def idle_jobs(cluster: Any, jobs: Jobs, left: int) -> list[str]:
-    """Return the jobs that have nothing to do any more: all runs that are left are being done in others."""
-    workers = {str(worker.name): len(worker.processing) for worker in list(cluster.scheduler.workers.values())}
-    if sum(min(assigned, jobs.cores) for assigned in workers.values()) < left:
-        return []
-    return [job for job in jobs.states if not workers.get(job)]
-
-
 def close(cluster: Any, jobs: Jobs, folder: Path) -> None:
     """End the jobs, then the scheduler, and forget the keys."""
     jobs.cancel()
     atexit.unregister(jobs.cancel)
     with contextlib.suppress(Exception):
         cluster.close(timeout=5)
-    for path in folder.glob("tls_*.pem"):
-        path.unlink(missing_ok=True)
+    forget_keys(folder)

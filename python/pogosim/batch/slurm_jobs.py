@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import getpass
-import os
 import re
 import shutil
 import subprocess
@@ -199,10 +198,3 @@ class Jobs:
         self.states.clear()
         with contextlib.suppress(OSError):
             ask(["scancel", f"--user={getpass.getuser()}", f"--name={self.name}"])
-
-
-def own_folder(path: Path) -> Path:
-    """Make a folder that only its owner can read."""
-    path.mkdir(parents=True, exist_ok=True)
-    os.chmod(path, 0o700)  # noqa: PTH101
-    return path

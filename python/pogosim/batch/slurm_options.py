@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from dataclasses import dataclass
+from typing import ClassVar
 
 from pogosim.batch.errors import BatchError
 
@@ -34,6 +35,8 @@ class SlurmJobs:
         BatchError: One of them has a wrong form.
     """
 
+    system: ClassVar[str] = "slurm"
+    flag: ClassVar[str] = "--slurm"
     jobs: int = JOBS
     cores: int | None = None
     memory: str | None = None

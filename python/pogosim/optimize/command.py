@@ -13,6 +13,7 @@ import pogosim
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.ending import catch_signals, start_logging
 from pogosim.batch.errors import reason
+from pogosim.batch.jobqueue_options import add_jobqueue_options
 from pogosim.batch.names import NamesError
 from pogosim.batch.run_options import INTERRUPTED, ISOLATED, WRONG, add_retry_options, check_names
 from pogosim.batch.slurm_options import add_slurm_options
@@ -92,6 +93,7 @@ def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
     group.add_argument("--backend", help="multiprocessing (default), sequential or dask")
     group.add_argument("--scheduler", metavar="tcp://...", help="let the workers of this Dask scheduler do the runs")
     add_slurm_options(options)
+    add_jobqueue_options(options)
     return options
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from pogosim.batch.backends import Workers
 from pogosim.batch.configuration import Configuration
+from pogosim.batch.jobqueue_options import asked_jobs
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.run_files import found_beside
-from pogosim.batch.slurm_options import slurm_jobs
 from pogosim.batch.tasks import check_logs_data
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
@@ -64,7 +64,7 @@ def objective_of(settings: Settings, beside: Path) -> Objective:
 
 def workers_of(arguments: argparse.Namespace, settings: Settings) -> Workers:
     """Return what does the runs; `parallelism` says how many at once on this machine, unless --workers does."""
-    jobs = slurm_jobs(arguments)
+    jobs = asked_jobs(arguments)
     number = arguments.workers
     if number is None and settings.batch_jobs and jobs is None:
         number = settings.candidate_jobs * settings.batch_jobs

@@ -1,4 +1,4 @@
-"""What a Dask worker in a job of SLURM does; it loads this module when it starts."""
+"""What a Dask worker in a job of a batch system does; it loads this module when it starts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def dask_teardown(worker: Any) -> None:  # noqa: ARG001
 
 
 def do_in_job(task: Task) -> Outcome:
-    """Do a run in a job. SLURM ends a job with a signal to all its processes: then the run has not failed."""
+    """Do a run in a job. Batch systems end a job by signals to all its processes: then the run has not failed."""
     distributed: Any = importlib.import_module("distributed")
     try:
         outcome = do_run(task)

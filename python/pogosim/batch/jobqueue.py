@@ -1,0 +1,297 @@
+"""Runs done by jobs of PBS, Grid Engine and others, whose submission dask-jobqueue knows.
+
+Jobs are Dask workers, which join a scheduler in the process of the batch. Connections are encrypted and authenticated
+with keys made for the batch, as others use the same network.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import logging
+import os
+import shutil
+import signal
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pogosim.batch.dask_backend import imported, outcomes_of
+from pogosim.batch.errors import BatchError, one_line, tell
+from pogosim.batch.in_job import do_in_job
+from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs
+from pogosim.batch.run import Outcome, Task
+from pogosim.batch.slurm_jobs import LOST_PER_JOB
+from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB
+from pogosim.extras import installing
+from pogosim.lines import counted
+
+LOSSES_PER_RUN = 5
+REMIND_S = 60.0
+ROLES = ("scheduler", "worker", "client")
+
+
+@contextlib.contextmanager
+def jobqueue(
+    request: QueuedJobs, keep_idle: bool
+) -> Iterator[Callable[[Sequence[Task]], Generator[Outcome, None, None]]]:
+    """Let jobs of a batch system do runs. They are submitted with the first runs, and end when this is closed.
+
+    Args:
+        request: What to ask the batch system for.
+        keep_idle: Keep jobs for runs that are still to come; otherwise, those without one are cancelled.
+    """
+    workers = QueuedWorkers(request, keep_idle)
+    try:
+        yield workers.do
+    finally:
+        workers.close()
+
+
+class QueuedWorkers:
+    """Jobs of a batch system that do runs, and the scheduler that they join.
+
+    Jobs that have joined and are lost are replaced, and their runs are done again. Logs stay if something went wrong.
+    """
+
+    def __init__(self, request: QueuedJobs, keep_idle: bool) -> None:
+        self.request = request
+        self.keep_idle = keep_idle
+        self.flag = f"--jobqueue {request.system}"
+        self.client: Any = None
+        self.cluster: Any = None
+        self.folder: Path | None = None
+        self.keeps_logs = False
+        self.cores, self.logs = CORES, ""
+        self.jobs: dict[str, Any] = {}  # by the name of the worker
+        self.joined: set[str] = set()  # names of the workers that have
+        self.submitted = 0
+        self.lost_in_vain = 0  # jobs lost since a run was finished
+        self.told_s = self.started_s = 0.0
+
+    def do(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
+        """Do runs.
+
+        Raises:
+            BatchError: A package or a command is missing, or the batch system refuses the jobs; later: all are lost.
+        """
+        if tasks and self.client is None:
+            self.start(tasks[0])
+        if tasks:
+            self.submit(self.jobs_for(len(tasks)) - len(self.jobs))
+        return self.outcomes(tasks)
+
+    def start(self, task: Task) -> None:
+        """Start the scheduler.
+
+        Raises:
+            BatchError: A package or a command is missing, or a setting is wrong.
+        """
+        dask, distributed = imported(self.flag, "slurm")
+        cluster_class = getattr(imported_jobqueue(self.flag), CLUSTERS[self.request.system])
+        if shutil.which(command := cluster_class.job_cls.submit_command.split()[0]) is None:
+            raise BatchError(f"{self.flag}: there is no command '{command}'; run it where you submit jobs")
+        self.folder = own_folder(task.settings.temporary.path / f"jobs_{task.settings.temporary.batch}")
+        self.keeps_logs = task.settings.temporary.is_kept
+        settings = self.settings(site_settings(dask, self.request.system), task.retries)
+        self.cores, self.logs = settings["cores"], settings["log_directory"]
+        try:
+            settings["security"] = with_keys(distributed.Security, self.folder)
+            self.cluster = cluster_class(silence_logs=logging.CRITICAL, **settings)
+            self.client = distributed.Client(self.cluster)
+        except (OSError, ValueError, RuntimeError, TypeError) as error:
+            raise BatchError(
+                f"{self.flag}: {one_line(error)}; settings are those of --jobqueue-set, and of "
+                f"{self.request.system} in jobqueue.yaml"
+            ) from None
+        self.started_s = self.told_s = time.monotonic()
+
+    def settings(self, site: dict[str, Any], retries: int) -> dict[str, Any]:
+        """Return the arguments of the class of dask-jobqueue."""
+        given = {**{key.replace("-", "_"): value for key, value in site.items()}, **dict(self.request.settings)}
+        cores = given.get("cores", CORES)
+        return {
+            "memory": f"{MEMORY_PER_CORE_GB * cores}GB",
+            "log_directory": str(self.folder),
+            **given,
+            "cores": cores,
+            "processes": 1,  # simulators are processes of their own, which its threads wait for
+            "nanny": False,  # the batch system sees when a worker ends
+            "scheduler_options": {
+                "dashboard_address": "127.0.0.1:0",
+                "allowed_failures": max(retries, LOSSES_PER_RUN),
+                **(given.get("scheduler_options") or {}),
+            },
+            "worker_extra_args": [*(given.get("worker_extra_args") or []), "--preload", "pogosim.batch.in_job"],
+        }
+
+    def jobs_for(self, runs: int) -> int:
+        """Return how many jobs are of use for so many runs, at most as many as are asked for."""
+        return min(self.request.jobs, -(-runs // self.cores))
+
+    def submit(self, number: int) -> None:
+        """Submit some jobs.
+
+        Raises:
+            BatchError: The batch system refuses them.
+        """
+        scheduler = self.cluster.scheduler
+        address = scheduler.contact_address or scheduler.address
+        for _ in range(number):
+            name = str(self.submitted)
+            made = self.cluster.new_spec
+            job = made["cls"](address, name, **made["options"])
+            try:
+                self.cluster.sync(job.start)
+            except (OSError, ValueError, RuntimeError) as error:
+                raise BatchError(f"{self.flag}: the job is refused: {words_of(error)}") from None
+            self.jobs[name] = job
+            self.submitted += 1
+        if number > 0:
+            counts = f"{counted(number, 'job')} of {counted(self.cores, 'core')}"
+            tell(
+                f"{self.request.system}: submitted {counts}; logs: {self.cluster.new_spec['options']['log_directory']}"
+            )
+
+    def outcomes(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
+        """Yield the outcomes of runs, and look after the jobs meanwhile."""
+        left = len(tasks)
+        if not tasks:
+            return
+        ended = outcomes_of(tasks, self.client, lambda: self.poll(left), do_in_job)
+        with contextlib.closing(ended) as outcomes:
+            for outcome in outcomes:
+                left -= 1
+                self.lost_in_vain = 0
+                self.keeps_logs |= bool(outcome.problem)
+                yield outcome
+
+    def poll(self, left: int) -> None:
+        """Replace jobs that have been lost, and say so if none has joined for long.
+
+        Args:
+            left: Runs that are not finished.
+
+        Raises:
+            BatchError: Job after job is lost.
+        """
+        workers = runs_of_workers(self.cluster)
+        self.joined |= set(workers) & set(self.jobs)
+        if not self.keep_idle:
+            for name in idle(self.jobs, workers, self.cores, left):
+                self.cancel(self.jobs.pop(name))
+        lost = [name for name in self.jobs if name in self.joined and name not in workers]
+        for name in lost:
+            job = self.jobs.pop(name)
+            self.lost_in_vain += 1
+            self.keeps_logs = True
+            tell(f"{self.request.system}: job {job.job_id} has ended before the batch; its runs are done again")
+            self.cancel(job)
+        if self.lost_in_vain >= LOST_PER_JOB * self.request.jobs:
+            raise BatchError(
+                f"{self.flag}: {self.lost_in_vain} jobs have ended since a run was finished; if runs need longer, or "
+                f"more memory, ask for it by --jobqueue-set; logs: {self.logs}"
+            )
+        if lost:
+            self.submit(self.jobs_for(left) - len(self.jobs))
+        now = time.monotonic()
+        if not self.joined and now - self.told_s >= REMIND_S:
+            self.told_s = now
+            tell(
+                f"{self.request.system}: no job has joined the batch yet, for {(now - self.started_s) / 60:.0f} min; "
+                f"jobs that start and cannot reach this machine say so in their logs: {self.logs}"
+            )
+
+    def cancel(self, job: Any) -> None:
+        """Cancel a job, if it is still there."""
+        with contextlib.suppress(Exception):
+            self.cluster.sync(job.close)
+
+    def close(self) -> None:
+        """End the jobs and the scheduler, and forget the keys."""
+        if self.client is not None:
+            with contextlib.suppress(Exception):
+                self.client.close(timeout=5)
+        for job in self.jobs.values():
+            self.cancel(job)
+        if self.cluster is not None:
+            with contextlib.suppress(Exception):
+                self.cluster.close(timeout=5)
+        if self.folder is not None:
+            forget_keys(self.folder)
+            if not self.keeps_logs:
+                shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def runs_of_workers(cluster: Any) -> dict[str, int]:
+    """Return how many runs the workers of a cluster have been given, by their names."""
+    return {str(worker.name): len(worker.processing) for worker in list(cluster.scheduler.workers.values())}
+
+
+def idle(jobs: Iterable[str], workers: Mapping[str, int], cores: int, left: int) -> list[str]:
+    """Return the jobs that have nothing to do any more: all runs that are left are being done in others.
+
+    Args:
+        jobs: Names of jobs.
+        workers: Runs that were given to the workers of jobs, by the names of the jobs.
+        cores: Runs at the same time in each.
+        left: Runs that are not finished.
+    """
+    if sum(min(assigned, cores) for assigned in workers.values()) < left:
+        return []
+    return [job for job in jobs if not workers.get(job)]
+
+
+def words_of(error: Exception) -> str:
+    """Return what a command of a batch system has said, in one line: dask-jobqueue quotes it."""
+    said = str(error).partition("stderr:\n")[2].strip() or str(error)
+    return one_line("; ".join(line for line in said.splitlines() if line.strip()))
+
+
+def imported_jobqueue(flag: str) -> Any:
+    """Return the package dask_jobqueue.
+
+    Raises:
+        BatchError: It, or what its encryption needs, is not installed; says what the flag needs.
+    """
+    on_interrupt = signal.getsignal(signal.SIGINT)
+    try:
+        importlib.import_module("cryptography")
+        return importlib.import_module("dask_jobqueue")
+    except ImportError as error:
+        package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
+        raise BatchError(f"{flag} needs the Python package '{package}'; install it: {installing('slurm')}") from None
+    finally:
+        signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
+
+
+def site_settings(dask: Any, system: str) -> dict[str, Any]:
+    """Return what the site and the user say about a batch system in jobqueue.yaml, or in the environment."""
+    entries = (dask.config.collect().get("jobqueue") or {}).get(system) or {}
+    return {key.replace("_", "-"): value for key, value in entries.items() if value is not None}
+
+
+def with_keys(security: Any, folder: Path) -> Any:
+    """Return the security of connections with keys of this batch alone, which are files that workers read."""
+    made = security.temporary().get_tls_config_for_role("worker")
+    paths = {name: folder / f"tls_{name}.pem" for name in ("ca_file", "cert", "key")}
+    for name, path in paths.items():
+        path.unlink(missing_ok=True)
+        path.touch(mode=0o600)
+        path.write_text(made[name])
+    pairs = {f"tls_{role}_{name}": str(paths[name]) for role in ROLES for name in ("cert", "key")}
+    return security(require_encryption=True, tls_ca_file=str(paths["ca_file"]), **pairs)
+
+
+def forget_keys(folder: Path) -> None:
+    """Remove the keys of a batch."""
+    for path in folder.glob("tls_*.pem"):
+        path.unlink(missing_ok=True)
+
+
+def own_folder(path: Path) -> Path:
+    """Make a folder that only its owner can read."""
+    path.mkdir(parents=True, exist_ok=True)
+    os.chmod(path, 0o700)  # noqa: PTH101
+    return path
