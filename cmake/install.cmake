@@ -64,17 +64,18 @@ install(FILES
     "${PROJECT_BINARY_DIR}/cmake/pogosimConfigVersion.cmake"
     DESTINATION "${package_dir}")
 
-# How programs are compiled: pogosim.pc for pkg-config (pogosim-sdk.pc for programs written for the robots' SDK), and the same in pogosim.mk for make, which needs no pkg-config. Once
+# How programs are compiled: pogosim.pc for pkg-config (pogosim-sdk.pc for programs written for the robots' SDK,
+# pogosim-host.pc for processes that step runs), and the same in pogosim.mk for make, which needs no pkg-config. Once
 # for each of the two places. The installed ones are relative to themselves: the tree may be moved, and `cmake --install
 # --prefix` may choose the place late. Blanks in paths are escaped as pkg-config and shells want it.
+set(build_settings pogosim.pc pogosim-sdk.pc pogosim-host.pc pogosim.mk pogosim-original.mk)
 function(pogosim_build_settings folder)
     foreach(place includedir libdir without_program interfacedir emudir shared_state template)
         string(REPLACE " " "\\ " ${place} "${${place}}")
     endforeach()
-    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.pc.in" "${folder}/pogosim.pc" @ONLY)
-    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim-sdk.pc.in" "${folder}/pogosim-sdk.pc" @ONLY)
-    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim.mk.in" "${folder}/pogosim.mk" @ONLY)
-    configure_file("${PROJECT_SOURCE_DIR}/cmake/pogosim-original.mk.in" "${folder}/pogosim-original.mk" @ONLY)
+    foreach(file IN LISTS build_settings)
+        configure_file("${PROJECT_SOURCE_DIR}/cmake/${file}.in" "${folder}/${file}" @ONLY)
+    endforeach()
 endfunction()
 
 if(APPLE)
@@ -90,9 +91,8 @@ set(shared_state "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-shared-state")
 set(without_program "${prefix}${CMAKE_INSTALL_BINDIR}/pogosim-without-program")
 set(template "${prefix}${CMAKE_INSTALL_DATADIR}/pogosim/template_prj")
 pogosim_build_settings("${PROJECT_BINARY_DIR}/cmake")
-install(FILES "${PROJECT_BINARY_DIR}/cmake/pogosim.pc" "${PROJECT_BINARY_DIR}/cmake/pogosim-sdk.pc"
-        "${PROJECT_BINARY_DIR}/cmake/pogosim.mk" "${PROJECT_BINARY_DIR}/cmake/pogosim-original.mk"
-    DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+list(TRANSFORM build_settings PREPEND "${PROJECT_BINARY_DIR}/cmake/" OUTPUT_VARIABLE installed_settings)
+install(FILES ${installed_settings} DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 set(includedir "${PROJECT_SOURCE_DIR}/include")
 get_target_property(libdir pogosim_library LIBRARY_OUTPUT_DIRECTORY)

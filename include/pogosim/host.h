@@ -4,7 +4,12 @@
 /// time step that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close().
 /// The package `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.
 ///
-/// Functions that can fail return a status; pogosim_host_error() then says what, in one line.
+/// Functions that can fail return a status; pogosim_host_error() then says what, in one line. Pointers are not NULL but
+/// where that is said.
+///
+///     cc host.c $(pkg-config --cflags --libs pogosim-host)
+///
+/// docs/python.md has an example.
 #ifndef POGOSIM_HOST_H
 #define POGOSIM_HOST_H
 
@@ -44,9 +49,10 @@ struct pogosim_run_options {
     int strict;    ///< not 0: unknown keys are errors
 };
 
-/// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Do not write to it.
+/// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Only those arrays of
+/// a brain that say so may be written.
 struct pogosim_array {
-    void const* data;
+    void* data;
     char type[8];    ///< as of NumPy's array interface: "<f4", "|u1", "|V24" (user data)
     int dimensions;  ///< 1 to 3
     int64_t shape[3];
@@ -81,12 +87,12 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Arrays of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
 /// "bodies.velocity" (n, 2) mm/s and "bodies.angular_velocity" (n) rad/s, of the displacement and the turn in the last
-/// step, "bodies.radius" (n) mm. Arrays of robots (rows: objects that run the program): "robots.id", "robots.category"
-/// (index into pogosim_run_categories), "robots.body" (index of its body; 2^32 - 1: none), "robots.led" (n, 5, 3),
-/// "robots.ticks", "robots.clock" (us; at least 2^62: switched off), "robots.messages_sent",
-/// "robots.messages_received", "robots.magnetometer" (n, 3), counts read last, "robots.magnetometer_samples" (n), how
-/// often it was read, "robots.user_data". Light on the floor: "light" (rows, columns), sensor counts. Columns
-/// that the program has added to the data file, by robot, as set by data_set_value_* at the last save: "columns.NAME",
+/// step, "bodies.radius" (n) mm. Arrays of robots (rows: objects that a program, a
+/// host or a script drives): "robots.id", "robots.category" (index into pogosim_run_categories), "robots.body" (index
+/// of its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us; at least 2^62: switched
+/// off), "robots.messages_sent", "robots.messages_received", "robots.magnetometer" (n, 3), counts read last,
+/// "robots.magnetometer_samples" (n), how often it was read, "robots.user_data", zero for those that do not run the
+/// program. Light on the floor: "light" (rows, columns), sensor counts. Columns that the program has added to the data file, by robot, as set by data_set_value_* at the last save: "columns.NAME",
 /// and "columns_absent.NAME", true for robots that set no value or wrote no row; for them "columns.NAME" has NaN, 0 or
 /// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
 /// until this thread asks for the next one.

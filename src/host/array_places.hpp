@@ -26,7 +26,7 @@ std::string type_of() {
 inline pogosim_array described(void const* data, std::string const& type, std::vector<std::int64_t> const& shape,
                                std::vector<std::int64_t> const& strides) {
     pogosim_array array = {};
-    array.data = data;
+    array.data = const_cast<void*>(data);  // host.h says which arrays may be written
     std::strncpy(array.type, type.c_str(), sizeof(array.type) - 1);
     array.dimensions = static_cast<int>(shape.size());
     for (std::size_t i = 0; i < shape.size(); ++i) {

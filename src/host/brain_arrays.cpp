@@ -89,6 +89,9 @@ pogosim_array pogosim::brain_array_of(pogosim_run& run, std::string_view categor
 
 int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* name, pogosim_array* array) {
     return with_status_of(*run, [&] {
+        if (category == nullptr || name == nullptr) {
+            throw ConfigError("expected the names of a category and of an array, found NULL");
+        }
         *array = brain_array_of(*run, category, name);
         return POGOSIM_OK;
     });
@@ -96,6 +99,9 @@ int pogosim_run_brain_array(pogosim_run* run, char const* category, char const* 
 
 int pogosim_run_clear_received(pogosim_run* run, char const* category) {
     return with_status_of(*run, [&] {
+        if (category == nullptr) {
+            throw ConfigError("expected the name of a category, found NULL");
+        }
         brain_of(*run, category).clear_received();
         return POGOSIM_OK;
     });

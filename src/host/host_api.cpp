@@ -64,6 +64,9 @@ int pogosim_run_open(pogosim_run_options const* options, pogosim_run** run) {
             throw ConfigError(fmt::format("seed: expected an integer from 0 to {}, found {}",
                                           std::numeric_limits<std::uint32_t>::max(), options->seed));
         }
+        if (options->configuration == nullptr) {
+            throw ConfigError("configuration: expected the name of a YAML file, found NULL");
+        }
         *run = std::make_unique<pogosim_run>(*options).release();
         return POGOSIM_OK;
     });

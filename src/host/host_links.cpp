@@ -48,8 +48,12 @@ Vec2 point(double const (&mm)[2]) {
     return {narrowed(mm[0]), narrowed(mm[1])};
 }
 
+/// -1: none, which is the arena.
 std::uint32_t object_of(std::int64_t index) {
-    return index < 0 || index >= kNone ? kNone : static_cast<std::uint32_t>(index);
+    if (index < -1 || index >= kNone) {
+        throw ConfigError(fmt::format("expected the index of an object, or -1 for the arena; found {}", index));
+    }
+    return index < 0 ? kNone : static_cast<std::uint32_t>(index);
 }
 
 std::int32_t robot_of(World const& world, std::vector<std::uint32_t> const& objects, std::uint32_t body) {

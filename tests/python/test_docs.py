@@ -18,7 +18,18 @@ from pictures import difference
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from robot_sdk import make_sdk
-from running import LIBRARY, ROOT, Run, build_folder, compile_program, example, ran, run, run_command
+from running import (
+    LIBRARY,
+    ROOT,
+    Run,
+    build_folder,
+    compile_program,
+    example,
+    pkg_config,
+    ran,
+    run,
+    run_command,
+)
 
 README = ROOT / "README.md"
 PAGES = [
@@ -87,6 +98,21 @@ def test_program_in_the_docs_compiles_and_runs(page: Path, code: str, tmp_path: 
     shares = name_of(page) == "docs/first_program.md" and "mydata" not in code  # what the page mends afterwards
     assert ("all robots share the variable 'change_at_ms'" in result.errors) == shares
     assert len(result.frame()) > 0
+
+
+def test_host_in_c_of_the_page_drives_its_robot(tmp_path: Path) -> None:
+    page = ROOT / "docs" / "python.md"
+    (code,) = [code for code in blocks(page, "c") if "<pogosim/host.h>" in code]
+    (tmp_path / "drive.c").write_text(code)
+    (tmp_path / "conf.yaml").write_text(
+        f"arena_file: {ROOT}/arenas/square.csv\narena_surface: 1.0e+6\n"
+        "objects: {robots: {type: pogobot, poses: [[300, 500, 0]], brain: host}}\n"
+    )
+    flags = pkg_config("--cflags", "--libs", package="pogosim-host")
+    command = ["cc", "-std=c11", "-Wall", "-Wextra", "-Werror", "drive.c", *flags, "-o", "drive"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    done = subprocess.run(["./drive"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (0, "200 steps, x = 500 mm, y = 500 mm\n"), done.stderr
 
 
 @pytest.fixture(scope="module")

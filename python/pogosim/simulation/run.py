@@ -534,8 +534,9 @@ class Simulation:
     def user_data(self) -> npt.NDArray[Any]:
         """USERDATA of the robots, as a structured array: `sim.user_data["age"]`. Shape (robots,).
 
-        It is the robots' own memory, and can be written. Its type comes from the program's debug information. That of
-        a firmware is a copy, which cannot be written, and zero for robots that do not run it.
+        It is the robots' own memory, and can be written. Its type comes from the program's debug information. Robots
+        that something else drives have zeros. That of a firmware is a copy, which cannot be written, and zero for
+        robots that do not run it.
 
         Raises:
             SimulationError: The program has no user data, or was compiled without `-g`.
