@@ -36,6 +36,12 @@ struct Figure {
     bool leds_turned;
 };
 
+/// Those that `rotate_LEDs_45_deg` turns: a model with LEDs of its own says where they are.
+bool are_usual(std::vector<Part> const& leds) {
+    static std::vector<Part> const usual = head_and_four_leds();
+    return leds == usual;
+}
+
 Figure figure_of(Scene const& scene, Object const& object) {
     Scenery const& scenery = scene.scenery();
     Snapshot const& snapshot = scene.snapshot;
@@ -59,7 +65,7 @@ Figure figure_of(Scene const& scene, Object const& object) {
         figure.glows = is_lit((*figure.led)[0]);
         auto const& spec = scenery.categories[object.category].spec.robot;
         figure.led_parts = &spec->model.leds;
-        figure.leds_turned = spec->rotate_leds_45_deg;
+        figure.leds_turned = spec->rotate_leds_45_deg && are_usual(spec->model.leds);
     }
     return figure;
 }
