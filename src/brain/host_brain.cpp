@@ -71,6 +71,11 @@ void HostBrain::set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorC
         std::int32_t const power = powers[motor];
         set_signed_power(world_, robot, motor, power);
         std::int32_t const most = kFullMotorPower;
+        if (power != 0 && !world_.spec_of(robot).model.has_motor(static_cast<int>(motor))) [[unlikely]] {
+            warn_once(TooMuch::motor,
+                      fmt::format("motors[{}, {}] is {}, but the robot's model has no such motor; it moves nothing",
+                                  robot - range_.first, motor, power));
+        }
         if (power > most || power < -most) [[unlikely]] {
             warn_once(TooMuch::power,
                       fmt::format("motors[{}, {}] is {}, expected -{} to {}; {} is used", robot - range_.first, motor,
@@ -102,6 +107,11 @@ void HostBrain::send(std::uint32_t robot) {
                                              kMostFaces - 1));
     }
     auto const emitters = is_to_one ? static_cast<std::uint8_t>(all & 1U << face) : all;
+    if (emitters == 0) [[unlikely]] {
+        warn_once(TooMuch::face_of_model,
+                  fmt::format("send_face[{}] is {}, but the robot's model has no such face; nothing is sent", i, face));
+        return;
+    }
     auto const size = std::min(static_cast<std::size_t>(length), kMostPayloadBytes);
     if (static_cast<std::size_t>(length) > kMostPayloadBytes) [[unlikely]] {
         warn_once(TooMuch::length, fmt::format("send_length[{}] is {}, expected at most {} bytes; {} are sent", i,

@@ -75,7 +75,7 @@ public:
 
 private:
     /// Values that the host writes beyond what a robot takes, each warned of once.
-    enum class TooMuch { power, length, face };
+    enum class TooMuch { power, length, face, face_of_model, motor };
 
     void tick(std::uint32_t robot);
     void set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorCount> const& powers);
@@ -91,7 +91,7 @@ private:
     World& world_;
     std::string category_;
     RobotRange range_;
-    std::array<bool, 3> warned_{};  // of a TooMuch
+    std::array<bool, 5> warned_{};  // of a TooMuch
     Inputs inputs_;
     Outputs outputs_;
     std::size_t most_received_ = 0;

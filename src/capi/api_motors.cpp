@@ -26,6 +26,7 @@ void set_power(char const* function, motor_id motor, std::uint16_t power) {
     pogosim::note_call();
     if (pogosim::is_motor(motor, NoteSlip{function})) {
         pogosim::check_power(power, NoteSlip{function});
+        pogosim::check_motor_is_there(pogosim::own_model(), motor, power, NoteSlip{function});
         pogosim::set_motor_power(*context.world, context.device, motor, power);
     }
 }

@@ -115,6 +115,23 @@ Entry read_entry(MapReader& reader) {
     return entry;
 }
 
+bool drives(Entry const& entry) {
+    return std::ranges::any_of(entry.motors, [](std::optional<int> const& power) { return power.has_value(); });
+}
+
+/// Entries that leave no trace: with nothing in them, or replaced at once by the next one.
+void warn_of_vain_entry(Place const& place, Entry const& entry, Entry const* before) {
+    auto const warn = [&](std::string_view what) {
+        log().warn("{}: {}: {}", place.node.where(), shown(place.path), what);
+    };
+    if (!drives(entry) && !entry.led && entry.message.empty()) {
+        warn("has a time and nothing else, so it does nothing; add `motors`, `led` or `message`");
+    } else if (before != nullptr && before->time_s == entry.time_s &&
+               ((drives(*before) && drives(entry)) || (before->led && entry.led && before->led_id == entry.led_id))) {
+        warn("replaces at once what the entry before it sets, which has the same time");
+    }
+}
+
 /// Reads the list of a script. `values`: the same list as it counts.
 ScriptSpec read_entries(Place const& place, Reading& reading, Node& values) {
     if (place.node.kind != Node::Kind::sequence) {
@@ -133,6 +150,7 @@ ScriptSpec read_entries(Place const& place, Reading& reading, Node& values) {
                     "the entries of a script are in the order of their times; this one is earlier than "
                     "the one before");
         }
+        warn_of_vain_entry(reader.place(), script.entries[i], i > 0 ? &script.entries[i - 1] : nullptr);
     }
     return script;
 }
@@ -206,8 +224,17 @@ ScriptSpec read_script(MapReader& robot, Node const& brain) {
     return spec;
 }
 
-/// LEDs that the robots do not have.
-void check_leds(ScriptSpec const& script, RobotModel const& model, Place const& place) {
+/// LEDs and motors that the robots do not have.
+void check_parts(ScriptSpec const& script, RobotModel const& model, Place const& place) {
+    constexpr std::array<std::string_view, kMotorCount> names{"right", "left", "back"};
+    for (std::size_t motor = 0; motor < kMotorCount; ++motor) {
+        auto const asks = [motor](Entry const& entry) { return entry.motors[motor].value_or(0) != 0; };
+        if (!model.has_motor(static_cast<int>(motor)) && std::ranges::any_of(script.entries, asks)) {
+            log().warn(
+                "{}: {}: the script gives power to the {} motor, which these robots do not have; it moves nothing",
+                place.node.where(), shown(place.path), names[motor]);
+        }
+    }
     for (ScriptSpec::Entry const& entry : script.entries) {
         if (entry.led && static_cast<std::size_t>(entry.led_id) >= model.leds.size()) {
             fail_at(place, fmt::format("the script sets LED {}, but these robots have {}", entry.led_id,
@@ -260,11 +287,14 @@ BrainSpec read_brain(MapReader& robot, RobotModel const& model) {
         fail_at({*node, robot.path_of("brain")},
                 fmt::format("expected {}, found {}{}", kBrain, found_text(*node), hint));
     }
+    if (node->find("firmware") != nullptr && node->find("script") != nullptr) {
+        fail_at({*node, robot.path_of("brain")}, "a script and a firmware exclude each other; remove one of them");
+    }
     if (node->find("firmware") != nullptr) {
         return read_firmware_map(robot, *node);
     }
     ScriptSpec script = read_script(robot, *node);
-    check_leds(script, model, {*node, robot.path_of("brain")});
+    check_parts(script, model, {*node, robot.path_of("brain")});
     return script;
 }
 

@@ -253,6 +253,7 @@ void check_cpu_time(Scenario const& scenario) {
 
 /// Warns of robots that would never do anything.
 void check_scripts(Scenario const& scenario) {
+    constexpr double kFarBeyond = 100.0;  // nearer ones may be those of a longer run
     for (ObjectConfig const& object : scenario.objects) {
         auto const* const script = object.spec.robot ? std::get_if<ScriptSpec>(&object.spec.robot->brain) : nullptr;
         Node const* const node = node_of(scenario, object);
@@ -269,6 +270,12 @@ void check_scripts(Scenario const& scenario) {
                 "so these robots do nothing",
                 object.line, shown(object.category), number_text(script->entries.front().time_s),
                 number_text(scenario.simulation_time_s));
+        } else if (double const last_s = script->entries.back().time_s;
+                   last_s >= kFarBeyond * scenario.simulation_time_s) {
+            log().warn(
+                "{}: objects.{}.brain: the script goes on until {} s, far beyond the end of the run (simulation_time: {}); "
+                "times are in s, not in ms",
+                object.line, shown(object.category), number_text(last_s), number_text(scenario.simulation_time_s));
         }
     }
 }

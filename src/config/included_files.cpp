@@ -76,17 +76,23 @@ Node read_model_file(std::string const& path) {
     return model;
 }
 
-/// Warns of a model of which nothing counts. `name` is where the entry names it.
-void warn_without_effect(Place const& name, Node const& entry, Node const& model) {
+/// Says which keys of a model do not count, and warns if none does. `name` is where the entry names it.
+void tell_of_unused_keys(Place const& name, Node const& entry, Node const& model) {
     std::vector<std::string_view> keys;
     for (auto const& [key, value] : model.entries) {
-        if (entry.find(key) == nullptr) {
-            return;
+        if (entry.find(key) != nullptr) {
+            keys.push_back(key);
         }
-        keys.push_back(key);
     }
-    log().warn("{}: {}: '{}' changes nothing, since the category has {} itself; remove there what the model is to give",
-               name.node.where(), name.path, shown(name.node.scalar), fmt::join(keys, ", "));
+    std::string const file = shown(name.node.scalar);
+    if (keys.size() == model.entries.size()) {
+        log().warn(
+            "{}: {}: '{}' changes nothing, since the category has {} itself; remove there what the model is to give",
+            name.node.where(), name.path, file, fmt::join(keys, ", "));
+    } else if (!keys.empty()) {
+        log().info("{}: {}: the category has {} itself, so those of '{}' do not count", name.node.where(), name.path,
+                   fmt::join(keys, ", "), file);
+    }
 }
 
 /// The entry with the model's keys first.
@@ -119,7 +125,7 @@ void include_robot_models(Node& root, Reading& reading) {
                 models.emplace(file, read_model_file(file.string()));
                 reading.object_files.push_back({file, "the robot model"});
             }
-            warn_without_effect(place, entry, models.at(file));
+            tell_of_unused_keys(place, entry, models.at(file));
             entry = merged(entry, models.at(file));
         });
     };

@@ -87,7 +87,7 @@ struct Key {
     bool required = false;
     bool (*is_used)(T const&) = nullptr;  // absent: always; asked when the keys above it in the table have been read
     std::string_view same_as{};           // the key that this is an alias of; only one of them may be set
-    bool refuses_blank = false;           // check_scenario() does, so no warning says that the default is used
+    bool warns_of_blank = true;           // where it has no value, a warning says that the default is used
 
     bool has_effect(T const& values) const { return is_used == nullptr || is_used(values); }
 
@@ -109,7 +109,14 @@ struct Key {
     /// The same key, whose value check_scenario() asks for.
     Key needing_a_name() const {
         Key key = *this;
-        key.refuses_blank = true;
+        key.warns_of_blank = false;
+        return key;
+    }
+
+    /// The same key of a section, which may have nothing in it.
+    Key may_be_empty() const {
+        Key key = *this;
+        key.warns_of_blank = false;
         return key;
     }
 
@@ -129,7 +136,7 @@ struct KeyDescription {
     std::string unit;
     std::string doc;
     bool required = false;
-    bool refuses_blank = false;
+    bool warns_of_blank = true;
 };
 
 /// One function object out of several, for std::visit.
@@ -150,7 +157,7 @@ KeyDescription describe(Key<T> const& key, T const& defaults) {
     description.unit = key.unit;
     description.doc = key.doc;
     description.required = key.required;
-    description.refuses_blank = key.refuses_blank;
+    description.warns_of_blank = key.warns_of_blank;
     std::visit(Overloaded{
                    [&](Choice<T> const& choice) {
                        description.expected = names_text(choice.names);

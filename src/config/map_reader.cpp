@@ -202,14 +202,15 @@ void MapReader::report_blank(KeyDescription const& key, Node const& value) const
     std::string const problem =
         fmt::format("{}: {}: {}", value.where(), shown(path_of(key.name)),
                     is_option ? value.scalar : fmt::format("expected {}, found nothing", key.expected));
+    std::string const value_of_default = key.default_text.empty() ? "" : ", " + key.default_text;
     if (is_option && reading_.strict_values) {
         reading_.problems.add(problem);
     } else if (!is_option && reading_.strict_keys) {
         reading_.problems.add(problem + "; write null for the default (--strict)");
     } else if (is_option) {
-        log().warn("{} (a single run takes the default, {})", problem, key.default_text);
+        log().warn("{} (a single run takes the default{})", problem, value_of_default);
     } else {
-        log().warn("{}; the default is used, {}", problem, key.default_text);
+        log().warn("{}; the default is used{}", problem, value_of_default);
     }
 }
 
@@ -218,7 +219,7 @@ void MapReader::finish(std::vector<std::string> const& ignored) const {
     for (auto const& [key, value] : map_.entries) {
         auto const known = std::ranges::find(known_, key, &KeyDescription::name);
         if (known != known_.end()) {
-            if (value.blank && !known->default_text.empty() && !known->refuses_blank) {
+            if (value.blank && known->warns_of_blank) {
                 report_blank(*known, value);
             }
         } else if (key != kBatchChoices && std::ranges::find(ignored, key) == ignored.end()) {

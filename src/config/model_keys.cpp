@@ -24,6 +24,7 @@ namespace {
 constexpr std::string_view kFaces = "a list of maps, such as [{angle_deg: 0}, {angle_deg: 180}]";
 constexpr std::string_view kLeds = "a list of maps, such as [{place: centre}, {angle_deg: 0}]";
 constexpr std::string_view kSensors = "a list of maps, such as [{angle_deg: 180}]";
+constexpr std::string_view kMotor = "a map, such as {linear_mm_s: 50, angular_rad_s: 2}";
 constexpr std::string_view kMotors = "a map of motors, such as {left: {linear_mm_s: 50, angular_rad_s: 2}}, or {}";
 constexpr std::string_view kProcessor = "a map of keys, such as {clock_hz: 21000000, memory_bytes: 131072}";
 constexpr std::string_view kCycles = "a map of keys, such as {load: 3, multiply: 33}";
@@ -226,6 +227,18 @@ struct NamedMotor {
 };
 constexpr std::array kNamedMotors{NamedMotor{"right", 0, 0}, NamedMotor{"left", 1, 1}, NamedMotor{"back", 2, 0}};
 
+struct WrittenMotors {};
+
+std::span<Key<WrittenMotors> const> named_motor_keys() {
+    using K = Key<WrittenMotors>;
+    static std::array const keys{
+        K{kNamedMotors[0].name, Elsewhere{kMotor}, any(), "", "The right motor."},
+        K{kNamedMotors[1].name, Elsewhere{kMotor}, any(), "", "The left motor."},
+        K{kNamedMotors[2].name, Elsewhere{kMotor}, any(), "", "The motor at the back."},
+    };
+    return keys;
+}
+
 /// The motors as shares of what all of them give together.
 void set_drives(std::vector<std::pair<std::uint8_t, WrittenMotor>> const& motors, RobotSpec& robot) {
     float linear_mm_s = 0.0F;
@@ -258,6 +271,22 @@ void refuse_unknown_motors(MapReader const& map) {
     }
 }
 
+/// Somebody who writes one number of one motor replaces the whole map, and robots that cannot turn look like a result.
+void warn_of_missing_speeds(MapReader const& map, bool is_any_linear, bool is_any_angular) {
+    auto const warn = [&](std::string_view key, std::string_view what) {
+        log().warn(
+            "{}: {}: none of these motors has a value of `{}`, so they cannot {} the robot; a map of motors "
+            "replaces the whole one of the robot's type or model. Write {}: 0 in one of them if that is meant",
+            map.place().node.where(), map.place().path, key, what, key);
+    };
+    if (!is_any_linear) {
+        warn("linear_mm_s", "move");
+    }
+    if (!is_any_angular) {
+        warn("angular_rad_s", "turn");
+    }
+}
+
 void read_motors(MapReader& reader, RobotSpec& robot) {
     if (reader.find("motors") == nullptr) {
         return;
@@ -265,15 +294,23 @@ void read_motors(MapReader& reader, RobotSpec& robot) {
     std::vector<std::pair<std::uint8_t, WrittenMotor>> motors;
     reader.read_map("motors", kMotors, [&](MapReader& map) {
         refuse_unknown_motors(map);
+        WrittenMotors written;
+        map.read(named_motor_keys(), written);
+        bool is_any_linear = false;
+        bool is_any_angular = false;
         for (NamedMotor const& known : kNamedMotors) {
-            bool const is_given = map.find(known.name) != nullptr;
-            map.read_map(known.name, [&](MapReader& inner) {
-                WrittenMotor motor{.forward = known.forward};
+            if (map.find(known.name) == nullptr) {
+                continue;
+            }
+            map.read_map(known.name, kMotor, [&](MapReader& inner) {
+                auto& [id, motor] = motors.emplace_back(known.id, WrittenMotor{.forward = known.forward});
                 inner.read(motor_keys(), motor);
-                if (is_given) {
-                    motors.emplace_back(known.id, motor);
-                }
+                is_any_linear |= inner.find("linear_mm_s") != nullptr;
+                is_any_angular |= inner.find("angular_rad_s") != nullptr;
             });
+        }
+        if (!motors.empty()) {
+            warn_of_missing_speeds(map, is_any_linear, is_any_angular);
         }
     });
     set_drives(motors, robot);
@@ -359,22 +396,51 @@ void warn_of_parts_outside(MapReader const& reader, RobotModel const& model, flo
     look("light_sensors", model.light_sensors);
 }
 
-void tell_of_turns(MapReader const& reader, RobotSpec const& robot, float of_motors_rad_s) {
+namespace {
+
+/// A speed that both the motors and a key of the category say.
+struct ToldSpeed {
+    char const* key;
+    std::string_view what;  // "the fastest turn"
+    std::string_view unit;
+    std::string_view verb;  // "turn"
+    std::string means;      // what it would be without `motors`, if that is something else
+    float of_motors;
+    float* chosen;
+};
+
+void tell_of_speed(MapReader& reader, ToldSpeed const& speed) {
     Node const* const motors = reader.find("motors");
-    Node const* const key = reader.find("max_angular_speed");
-    constexpr float kTurns = 4.0F;  // of two_wheels(): both against each other
-    float const chosen_rad_s = robot.max_angular_speed_rad_s;
-    if (motors == nullptr || key == nullptr || !robot.model.has_motors() || chosen_rad_s == of_motors_rad_s) {
+    Node const* const key = reader.find(speed.key);
+    if (motors == nullptr || key == nullptr || *speed.chosen == speed.of_motors) {
+        return;
+    }
+    if (speed.of_motors == 0.0F) {
+        log().warn("{}: {}: has no effect, since the `motors` ({}) do not {} the robot", key->where(),
+                   reader.path_of(speed.key), motors->where(), speed.verb);
+        *speed.chosen = 0.0F;
+        reader.set_value(speed.key, value_node(0.0F));
         return;
     }
     // An old configuration that takes a model gets a new meaning unawares, but not one that has written both.
     auto const level = motors->source == key->source ? spdlog::level::info : spdlog::level::warn;
-    log().log(
-        level,
-        "{}: {}: with `motors` ({}), this is the fastest turn, {:.4g} rad/s; without them, it would be {:.4g} rad/s. "
-        "Remove it to turn as fast as the motors say, {:.4g} rad/s",
-        key->where(), reader.path_of("max_angular_speed"), motors->where(), chosen_rad_s, kTurns * chosen_rad_s,
-        of_motors_rad_s);
+    log().log(level,
+              "{}: {}: with `motors` ({}), this is {}, {:.4g} {}{}. Remove it to {} as fast as the motors say, {:.4g} "
+              "{}",
+              key->where(), reader.path_of(speed.key), motors->where(), speed.what, *speed.chosen, speed.unit,
+              speed.means, speed.verb, speed.of_motors, speed.unit);
+}
+
+}  // namespace
+
+void tell_of_speeds(MapReader& reader, RobotSpec& robot, MotorSpeeds const& of_motors) {
+    constexpr float kTurns = 4.0F;  // of two_wheels(): both against each other
+    tell_of_speed(reader, {"max_linear_speed", "the top speed", "mm/s", "move", "", of_motors.linear_mm_s,
+                           &robot.max_linear_speed_mm_s});
+    tell_of_speed(reader,
+                  {"max_angular_speed", "the fastest turn", "rad/s", "turn",
+                   fmt::format("; without them, it would be {:.4g} rad/s", kTurns * robot.max_angular_speed_rad_s),
+                   of_motors.angular_rad_s, &robot.max_angular_speed_rad_s});
 }
 
 std::vector<ModelTable> model_tables() {

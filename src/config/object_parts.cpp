@@ -115,7 +115,7 @@ std::span<Key<RobotSpec> const> robot_keys() {
           "bits, so the program must erase before it writes again. Default: `flash` of the top level, else overwrite."}
             .only_if([](RobotSpec const& robot) { return robot.flash.has_value(); }),
         K{"rotate_LEDs_45_deg", &RobotSpec::rotate_leds_45_deg, any(), "",
-          "Drawing only: rotate the LEDs by 45 degrees."},
+          "Drawing only: rotate the LEDs by 45 degrees; `leds` of a model that has others are drawn where they are."},
     };
     return keys;
 }
@@ -263,9 +263,9 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     robot.model = model;
     read_model(reader, robot);
     warn_of_parts_outside(reader, robot.model, bounding_radius(object.spec.shape));
-    float const fastest_turn_rad_s = robot.max_angular_speed_rad_s;
+    MotorSpeeds const of_motors{robot.max_linear_speed_mm_s, robot.max_angular_speed_rad_s};
     reader.read(robot_keys(), robot);
-    tell_of_turns(reader, robot, fastest_turn_rad_s);
+    tell_of_speeds(reader, robot, of_motors);
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);
     reader.read(brain_keys(), robot);

@@ -79,9 +79,15 @@ void read_model(MapReader& reader, RobotSpec& robot);
 /// Warns of places [x, y] beyond the bounding circle of the body, once these robots' shape is known.
 void warn_of_parts_outside(MapReader const& reader, RobotModel const& model, float radius_mm);
 
-/// Says what `max_angular_speed` means beside `motors`, once it has been read: a warning if they come from different
-/// files. `of_motors_rad_s`: the fastest turn that read_model() has found.
-void tell_of_turns(MapReader const& reader, RobotSpec const& robot, float of_motors_rad_s);
+/// What the motors of a robot give together, as read_model() has found it.
+struct MotorSpeeds {
+    float linear_mm_s = 0.0F;
+    float angular_rad_s = 0.0F;
+};
+
+/// Says what `max_linear_speed` and `max_angular_speed` mean beside `motors`, once they have been read: a warning if
+/// they come from another file. What the motors do not do, no key makes them do.
+void tell_of_speeds(MapReader& reader, RobotSpec& robot, MotorSpeeds const& of_motors);
 
 /// The tables of the maps in a model, for the configuration reference.
 struct ModelTable {

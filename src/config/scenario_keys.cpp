@@ -85,18 +85,26 @@ std::span<Key<Scenario> const> scenario_keys() {
           "Files that keep the flash memory of robots from one run to the next; see its own table."},
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
-          "Everything in the arena, by category; see the tables below."},
+          "Everything in the arena, by category; see the tables below."}
+            .may_be_empty(),
         K{"links", Elsewhere{kLinksMap}, any(), "",
-          "Springs, rods and hinges between objects, by names of your own; see their own table."},
-        K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."},
+          "Springs, rods and hinges between objects, by names of your own; see their own table."}
+            .may_be_empty(),
+        K{"parameters", Elsewhere{"a map of keys"}, any(), "", "Values for the global variables of the user program."}
+            .may_be_empty(),
         // For the batch and optimisation tools; the simulator reads past them.
-        K{"pogobatch", Elsewhere{"a map of keys"}, any(), "", "For batch tools: their settings."},
-        K{"_rundr", Elsewhere{"a map of keys"}, any(), "", "For batch tools: settings of the scheduler Rundra."},
-        K{"result_filename_format", Elsewhere{"a string"}, any(), "", "For batch tools: name of each result file."},
+        K{"pogobatch", Elsewhere{"a map of keys"}, any(), "", "For batch tools: their settings."}.may_be_empty(),
+        K{"_rundr", Elsewhere{"a map of keys"}, any(), "", "For batch tools: settings of the scheduler Rundra."}
+            .may_be_empty(),
+        K{"result_filename_format", Elsewhere{"a string"}, any(), "", "For batch tools: name of each result file."}
+            .may_be_empty(),
         K{"result_new_columns", Elsewhere{"a list of key paths"}, any(), "",
-          "For batch tools: constant columns to add."},
-        K{"optimization", Elsewhere{"a map of keys"}, any(), "", "For optimisation tools: their settings."},
-        K{"progress_bar", Elsewhere{"true or false"}, any(), "", "Ignored; use the command-line option -P."},
+          "For batch tools: constant columns to add."}
+            .may_be_empty(),
+        K{"optimization", Elsewhere{"a map of keys"}, any(), "", "For optimisation tools: their settings."}
+            .may_be_empty(),
+        K{"progress_bar", Elsewhere{"true or false"}, any(), "", "Ignored; use the command-line option -P."}
+            .may_be_empty(),
     };
     return keys;
 }

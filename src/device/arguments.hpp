@@ -43,13 +43,22 @@ std::string slip_text(Slip const& slip, Value const& value) {
                        slip.function.empty() ? "" : "(): ", slip.argument, value, slip.expected, slip.outcome);
 }
 
+/// What is expected of the number of a part of which a robot has so many. Literals.
+constexpr std::string_view one_of_parts(std::size_t count, std::string_view some, std::string_view none) {
+    return count > 0 ? some : none;
+}
+
 /// Values of the interface come first, then those that a robot's model lacks.
 template <class Note>
 bool is_led(RobotModel const& model, std::uint8_t id, Note const& note) {
     if (id >= kLedCount) [[unlikely]] {
         note(WrongArgument{"id", "0 (head) to 4 (left)", "nothing is set"}, id);
     } else if (id >= model.leds.size()) [[unlikely]] {
-        note(WrongArgument{"id", "one of the leds of this robot's model, from 0", "nothing is set"}, id);
+        note(WrongArgument{"id",
+                           one_of_parts(model.leds.size(), "one of the leds of this robot's model, from 0",
+                                        "none, since this robot's model has no LEDs"),
+                           "nothing is set"},
+             id);
     }
     return id < model.leds.size();
 }
@@ -61,7 +70,12 @@ bool is_light_sensor(RobotModel const& model, std::uint8_t sensor, Note const& n
         note(WrongArgument{"sensor_number", "p_B (0, back), p_FL (1, front left) or p_FR (2, front right)", outcome},
              sensor);
     } else if (sensor >= model.light_sensors.size()) [[unlikely]] {
-        note(WrongArgument{"sensor_number", "one of the light_sensors of this robot's model, from 0", outcome}, sensor);
+        note(WrongArgument{"sensor_number",
+                           one_of_parts(model.light_sensors.size(),
+                                        "one of the light_sensors of this robot's model, from 0",
+                                        "none, since this robot's model has no light sensors"),
+                           outcome},
+             sensor);
     }
     return sensor < model.light_sensors.size();
 }
@@ -72,7 +86,11 @@ bool is_flash_page(RobotModel const& model, std::uint16_t page, std::string_view
     if (page >= kFlashPageCount) [[unlikely]] {
         note(WrongArgument{"page", "0 to 5887 (POGOBOT_USER_FLASH_PAGE_COUNT - 1)", outcome}, page);
     } else if (page >= model.flash_pages) [[unlikely]] {
-        note(WrongArgument{"page", "one of the flash_pages of this robot's model, from 0", outcome}, page);
+        note(WrongArgument{"page",
+                           one_of_parts(model.flash_pages, "one of the flash_pages of this robot's model, from 0",
+                                        "none, since this robot's model has no pages of flash memory"),
+                           outcome},
+             page);
     }
     return page < model.flash_pages;
 }
@@ -84,6 +102,18 @@ bool is_motor(int motor, Note const& note) {
         note(WrongArgument{"motor", "motorR (0), motorL (1) or motorB (2)", "nothing is set"}, motor);
     }
     return is_known;
+}
+
+/// A motor that the robot lacks is inert, as a connector without a motor is.
+template <class Note>
+void check_motor_is_there(RobotModel const& model, int motor, std::uint16_t power, Note const& note) {
+    if (power > 0 && !model.has_motor(motor)) [[unlikely]] {
+        note(WrongArgument{"motor",
+                           one_of_parts(model.drives.size(), "one of the motors of this robot's model",
+                                        "none, since this robot's model has no motors"),
+                           "it moves nothing"},
+             motor);
+    }
 }
 
 /// A power that is negative as a 16-bit number was meant as a reversed direction.

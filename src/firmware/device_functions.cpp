@@ -49,6 +49,7 @@ Motors& motors_of(FirmwareCall const& call) {
 CallOutcome set_power(FirmwareCall& call) {
     if (is_motor(call.number(0), call)) {
         check_power(call.half(1), call);
+        check_motor_is_there(call.world.spec_of(call.robot).model, call.number(0), call.half(1), call);
         set_motor_power(call.world, call.robot, call.number(0), call.half(1));
     }
     return CallOutcome::returns;

@@ -1,5 +1,6 @@
 #include "world/robot_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -56,6 +57,10 @@ std::vector<Part> three_light_sensors() {
 std::vector<Drive> two_wheels() {
     return {{.motor = 0, .forward = 0, .linear = 0.5F, .angular = -2.0F},
             {.motor = 1, .forward = 1, .linear = 0.5F, .angular = 2.0F}};
+}
+
+bool RobotModel::has_motor(int motor) const {
+    return std::ranges::any_of(drives, [motor](Drive const& drive) { return drive.motor == motor; });
 }
 
 RobotModel head_model() {

@@ -87,6 +87,7 @@ struct RobotModel {
     ProcessorSpec processor{};
 
     bool has_motors() const { return !drives.empty(); }
+    bool has_motor(int motor) const;  // 0 right, 1 left, 2 back
     /// Bit d: it has face d. An outline counts as all of them.
     std::uint8_t face_bits() const {
         std::size_t const count = sends_along_outline ? kMostFaces : faces.size();

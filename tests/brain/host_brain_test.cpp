@@ -75,12 +75,15 @@ TEST(HostBrain, FirstValueBeyondWhatARobotTakesIsWarnedOfWithItsRobot) {
     EXPECT_EQ(warnings.text(),
               "brain of category 'robots': motors[1, 1] is -1024, expected -1023 to 1023; -1023 is used\n"
               "brain of category 'robots': send_length[1] is 383, expected at most 382 bytes; 382 are sent\n");
-    brain.inputs().motors[0] = {5000, 5000, 5000};
+    brain.inputs().motors[0] = {5000, 5000, 7};
     write_message(brain, 0, "abc");
     brain.inputs().send_face[0] = 4;
     tick(world, brain);
-    ASSERT_EQ(warnings.lines().size(), 3U);
-    EXPECT_EQ(warnings.lines()[2],
+    ASSERT_EQ(warnings.lines().size(), 4U);
+    EXPECT_EQ(
+        warnings.lines()[2],
+        "brain of category 'robots': motors[0, 2] is 7, but the robot's model has no such motor; it moves nothing");
+    EXPECT_EQ(warnings.lines()[3],
               "brain of category 'robots': send_face[0] is 4, expected -1 to 3; all directions are used");
 }
 

@@ -293,22 +293,80 @@ TEST(RobotModel, PartsOutsideOfTheBodyAreTold) {
               "26.5 mm\n");
 }
 
-TEST(RobotModel, SpeedOfTheCategoryIsToldWhatItMeansWithTheMotorsOfAFile) {
+TEST(RobotModel, SpeedsOfTheCategoryAreToldWhatTheyMeanWithTheMotorsOfAFile) {
     Warnings const warnings;
-    robot("    motors: {left: {angular_rad_s: 2}}\n    max_angular_speed: 1\n");  // both are written there
+    robot(
+        "    motors: {left: {linear_mm_s: 5, angular_rad_s: 2}}\n    max_angular_speed: 1\n    max_linear_speed: 9\n");
     Folder const folder;
-    Folder::write("m.yaml", "motors: {left: {angular_rad_s: 2}, right: {angular_rad_s: -2}}\n");
+    Folder::write("m.yaml",
+                  "motors: {left: {linear_mm_s: 10, angular_rad_s: 2}, right: {linear_mm_s: -10, "
+                  "angular_rad_s: -2}}\n");
     Folder::write("x.yaml", "objects:\n  robots: {type: pogobot, robot_model: m.yaml}\n");
-    load_scenario("x.yaml", {}, object_types());
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=4"}},
-                  object_types());  // the same as the motors say
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_linear_speed=40"}},
-                  object_types());  // means what it has always meant
+    auto const robot_with = [](std::vector<std::string> const& overrides) {
+        return *load_scenario("x.yaml", {.overrides = overrides}, object_types()).objects[0].spec.robot;
+    };
+    robot_with({});
+    robot_with({"objects.robots.max_angular_speed=4", "objects.robots.max_linear_speed=20"});  // as the motors say
     EXPECT_EQ(warnings.text(), "");
-    load_scenario("x.yaml", {.overrides = {"objects.robots.max_angular_speed=2"}}, object_types());
+    robot_with({"objects.robots.max_angular_speed=2"});
+    robot_with({"objects.robots.max_linear_speed=100"});
     EXPECT_EQ(warnings.text(),
               "--set: objects.robots.max_angular_speed: with `motors` (m.yaml:1), this is the fastest turn, 2 rad/s; "
-              "without them, it would be 8 rad/s. Remove it to turn as fast as the motors say, 4 rad/s\n");
+              "without them, it would be 8 rad/s. Remove it to turn as fast as the motors say, 4 rad/s\n"
+              "--set: objects.robots.max_linear_speed: with `motors` (m.yaml:1), this is the top speed, 100 mm/s. "
+              "Remove it to move as fast as the motors say, 20 mm/s\n");
+}
+
+TEST(RobotModel, NoKeyMovesWhatTheMotorsDoNotMove) {
+    Warnings const warnings;
+    RobotSpec const turning =
+        robot("    motors: {left: {linear_mm_s: 0, angular_rad_s: 2}}\n    max_linear_speed: 300\n");
+    RobotSpec const straight =
+        robot("    motors: {left: {linear_mm_s: 50, angular_rad_s: 0}}\n    max_angular_speed: 2\n");
+    EXPECT_EQ(turning.max_linear_speed_mm_s, 0.0F);
+    EXPECT_EQ(straight.max_angular_speed_rad_s, 0.0F);
+    EXPECT_EQ(
+        warnings.text(),
+        "x.yaml:7: objects.robots.max_linear_speed: has no effect, since the `motors` (x.yaml:6) do not move the "
+        "robot\n"
+        "x.yaml:7: objects.robots.max_angular_speed: has no effect, since the `motors` (x.yaml:6) do not turn the "
+        "robot\n");
+}
+
+TEST(RobotModel, MotorsWithoutASpeedAreWarnedOf) {
+    for (
+        auto const& [motors, said] : std::vector<std::pair<std::string, std::string>>{
+            {"{left: {linear_mm_s: 60}}",
+             "x.yaml:6: objects.robots.motors: none of these motors has a value of `angular_rad_s`, so they cannot turn "
+             "the robot; a map of motors replaces the whole one of the robot's type or model. Write angular_rad_s: 0 "
+             "in one of them if that is meant\n"},
+            {"{back: {angular_rad_s: 1}}",
+             "x.yaml:6: objects.robots.motors: none of these motors has a value of `linear_mm_s`, so they cannot move "
+             "the robot; a map of motors replaces the whole one of the robot's type or model. Write linear_mm_s: 0 in "
+             "one of them if that is meant\n"},
+            {"{left: {linear_mm_s: 60, angular_rad_s: 0}, right: {}}", ""},
+            {"{}", ""}}) {
+        SCOPED_TRACE(motors);
+        Warnings const warnings;
+        robot("    motors: " + motors + "\n");
+        EXPECT_EQ(warnings.text(), said);
+    }
+}
+
+TEST(RobotModel, PartsWithoutAValueAreWarnedOf) {
+    for (std::string const key : {"faces", "leds", "light_sensors", "motors", "processor", "battery",
+                                  "msg_success_rate", "function_costs", "brain", "poses"}) {
+        SCOPED_TRACE(key);
+        Warnings const warnings;
+        robot("    " + key + ":\n");
+        EXPECT_NE(warnings.text().find("x.yaml:6: objects.robots." + key + ": expected "), std::string::npos)
+            << warnings.text();
+        EXPECT_NE(warnings.text().find(", found nothing; the default is used"), std::string::npos);
+    }
+    Warnings const warnings;
+    robot("    motors:\n      left:\n      right: {linear_mm_s: 1, angular_rad_s: 1}\n");
+    EXPECT_NE(warnings.text().find("x.yaml:7: objects.robots.motors.left: expected "), std::string::npos)
+        << warnings.text();
 }
 
 TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {

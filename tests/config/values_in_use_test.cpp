@@ -38,8 +38,12 @@ void expect_complete(Scenario const& scenario) {
     Folder const folder;
     std::string const text = to_yaml(scenario.source->values);
     Folder::write("values.yaml", text);
-    EXPECT_EQ(to_yaml(load_scenario("values.yaml", {.overrides = {}, .strict = true}, object_types()).source->values),
-              text);
+    Scenario const again = load_scenario("values.yaml", {.overrides = {}, .strict = true}, object_types());
+    EXPECT_EQ(to_yaml(again.source->values), text);
+    ASSERT_EQ(again.objects.size(), scenario.objects.size());
+    for (std::size_t i = 0; i < scenario.objects.size(); ++i) {
+        EXPECT_TRUE(again.objects[i].spec == scenario.objects[i].spec) << scenario.objects[i].category;
+    }
     std::vector<std::string> lines = warnings.lines();
     std::erase_if(lines, [](std::string const& line) { return line.find("walls add energy") != std::string::npos; });
     EXPECT_EQ(lines, std::vector<std::string>());
@@ -119,6 +123,19 @@ TEST(ValuesInUse, GiveTheSameValuesForEveryTypeOfObject) {
         SCOPED_TRACE(type.name);
         expect_complete(load("arena_file: a.csv\n" + kRobots + "  other:\n    geometry: disk\n    type: " +
                              std::string(type.name) + "\n    x: 100.1\n    y: -1.0e-20\n"));
+    }
+}
+
+TEST(ValuesInUse, GiveTheSameRobotsForEveryModel) {
+    for (std::string const model :
+         {"motors: {}", "motors: {left: {linear_mm_s: 50, angular_rad_s: 1}}",
+          "motors: {left: {linear_mm_s: 0, angular_rad_s: 1}, back: {}}\n    max_linear_speed: 3",
+          "motors: {left: {linear_mm_s: 5, angular_rad_s: 1}, right: {forward: 1}}\n    max_linear_speed: 3",
+          "faces: [{angle_deg: 10.5, reception_deg: 30, place: centre}]",
+          "leds: []\n    light_sensors: [{place: [1, 2]}]",
+          "battery: {capacity_mah: 3}\n    flash_pages: 3\n    processor: {clock_hz: 1000}"}) {
+        SCOPED_TRACE(model);
+        expect_complete(load("arena_file: a.csv\n" + kRobots + "    " + model + "\n"));
     }
 }
 

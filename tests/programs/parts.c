@@ -23,6 +23,7 @@ void user_init(void) {
     if (asks_for_all) {
         static char const page[POGOBOT_USER_FLASH_PAGE_SIZE] = {0};
         pogobot_led_setColors(255, 0, 0, 4);
+        pogobot_motor_power_set(motorL, 9);
         write_page_flash(100, page);
         pogobot_infrared_sendLongMessage_uniSpe(ir_left, (uint8_t*)"x", 1);
     }

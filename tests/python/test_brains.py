@@ -315,6 +315,24 @@ def test_mistakes_in_scripts_are_told(tmp_path: Path, brain: object, message: st
         ([{"time_s": 10, "motors": [9, 9, 0]}], r"the script begins at 10 s, after the end .* \(simulation_time: 10\)"),
         ([{"time_s": 0, "motors": [1, 1, 0]}], r"if you meant shares of full power, write \[1023, 1023, 0\]"),
         ([{"time_s": 9, "motors": [2, 1, 0]}, {"time_s": 11, "motors": [0, 0, 0]}], None),
+        (
+            [{"time_s": 0, "motors": [2, 1, 0]}, {"time_s": 2500, "motors": [0, 0, 0]}],
+            r"the script goes on until 2500 s, far beyond the end .* \(simulation_time: 10\); times are in s, not in",
+        ),
+        ([{"time_s": 0}], r"objects\.robots\.brain\.script\.0: has a time and nothing else, so it does nothing"),
+        (
+            [{"time_s": 1, "motors": [2, 1, 0]}, {"time_s": 1, "motors": [9, 9, 0]}],
+            r"brain\.script\.1: replaces at once what the entry before it sets, which has the same time",
+        ),
+        ([{"time_s": 1, "motors": [2, 1, 0]}, {"time_s": 1, "led": [9, 9, 0]}], None),
+        (
+            [{"time_s": 1, "led": [2, 1, 0], "led_id": 1}, {"time_s": 1, "led": [9, 9, 0], "led_id": 2}],
+            None,
+        ),
+        (
+            [{"time_s": 1, "motors": [0, 0, 9]}],
+            r"gives power to the back motor, which these robots do not have",
+        ),
     ],
 )
 def test_script_that_does_nothing_is_warned_of(
@@ -324,6 +342,25 @@ def test_script_that_does_nothing_is_warned_of(
         texts = [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
     assert bool(texts) == (message is not None)
     assert message is None or re.search(message, "".join(texts))
+
+
+def test_script_and_firmware_exclude_each_other(tmp_path: Path) -> None:
+    both = {"script": [{"time_s": 0, "motors": [9, 9, 0]}], "firmware": "robot.elf"}
+    message = "objects.robots.brain: a script and a firmware exclude each other; remove one of them"
+    assert message in error_of(tmp_path, {**ALONE, "objects.robots.brain": both})
+
+
+def test_motors_and_faces_that_a_model_lacks_are_told_to_the_host(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    with hosted(tmp_path, {**HOST, "objects.robots.faces": [{"angle_deg": 0}]}) as sim:
+        brain = sim.brain("robots")
+        brain.motors[1] = [5, 5, 5]
+        brain.send(0, b"x", face=3)
+        sim.step(20)
+        assert caplog.text.count("motors[1, 2] is 5, but the robot's model has no such motor; it moves nothing") == 1
+        assert caplog.text.count("send_face[0] is 3, but the robot's model has no such face; nothing is sent") == 1
+        assert np.linalg.norm(sim.velocities[1]) > 0.0
 
 
 def test_program_that_no_category_needs_is_told(program: Compile, tmp_path: Path) -> None:
@@ -359,7 +396,7 @@ def test_data_file_keeps_a_script_whole(program: Compile, tmp_path: Path) -> Non
 
 
 def test_data_file_repeats_a_script_without_colours(program: Compile, tmp_path: Path) -> None:
-    (tmp_path / "s.yaml").write_text("script: [{time_s: 1, motors: [1, 2, 3]}, {time_s: 2, led: [4, 5, 6]}]\n")
+    (tmp_path / "s.yaml").write_text("script: [{time_s: 1, motors: [1, 2, 0]}, {time_s: 2, led: [4, 5, 6]}]\n")
     result = run(program("sample.c"), tmp_path, {**ALONE, "objects.robots.brain": {"script": "s.yaml"}})
     again = (result.table().schema.metadata or {})[b"resolved_configuration"]
     repeated = run(program("sample.c"), tmp_path, yaml.safe_load(again), ["--check-config"])

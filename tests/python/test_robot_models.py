@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 import yaml
 from conftest import Compile
-from running import ROOT, Run, run, run_shipped
+from pogosim.utils import load_dataframe
+from running import ROOT, Run, run, run_command, run_shipped
 
 PLAIN: dict[str, Any] = {
     "arena_file": "arenas/square.csv",
@@ -42,7 +43,11 @@ def model_file(folder: Path, text: str) -> str:
 
 
 def test_each_motor_gives_the_speed_of_its_table(parts: Path, tmp_path: Path) -> None:
-    motors = {"right": {"linear_mm_s": 30}, "left": {"linear_mm_s": 40}, "back": {"linear_mm_s": -20}}
+    motors = {
+        "right": {"linear_mm_s": 30, "angular_rad_s": 0},
+        "left": {"linear_mm_s": 40},
+        "back": {"linear_mm_s": -20},
+    }
     for name, powers, speed in (
         ("right", {"right": 1023}, 30),
         ("left", {"left": 1023}, 40),
@@ -56,7 +61,7 @@ def test_each_motor_gives_the_speed_of_its_table(parts: Path, tmp_path: Path) ->
 
 def test_fastest_turn_is_max_angular_speed_of_a_model(parts: Path, tmp_path: Path) -> None:
     # Against each other, the two wheels turn the robot by 1.5 rad/s: the right one runs backwards by its direction bit.
-    motors = {"right": {"angular_rad_s": -1, "forward": 1}, "left": {"angular_rad_s": 1}}
+    motors = {"right": {"angular_rad_s": -1, "linear_mm_s": 0, "forward": 1}, "left": {"angular_rad_s": 1}}
     settings = {
         "objects.robots.motors": motors,
         "objects.robots.max_angular_speed": 1.5,
@@ -133,7 +138,7 @@ def test_light_is_read_where_the_sensors_are(parts: Path, tmp_path: Path) -> Non
 
 
 def test_parts_that_the_model_lacks_are_told_once_each(parts: Path, tmp_path: Path) -> None:
-    poor = "faces: [{angle_deg: 0}]\nleds: [{place: centre}]\nlight_sensors: []\nflash_pages: 10\n"
+    poor = "faces: [{angle_deg: 0}]\nleds: [{place: centre}]\nlight_sensors: []\nflash_pages: 10\nmotors: {}\n"
     settings = {**PLAIN, "objects.robots.robot_model": model_file(tmp_path, poor), "parameters": {"asks_for_all": True}}
     result = run(parts, tmp_path, settings)
     assert result.code == 0, result.text
@@ -141,9 +146,32 @@ def test_parts_that_the_model_lacks_are_told_once_each(parts: Path, tmp_path: Pa
         "pogobot_led_setColors(): id is 4, expected one of the leds of this robot's model, from 0; nothing is set",
         "write_page_flash(): page is 100, expected one of the flash_pages of this robot's model, from 0; nothing is",
         "pogobot_infrared_sendLongMessage_uniSpe(): dir is 3, expected one of the faces of this robot's model, from 0",
-        "pogobot_photosensors_read(): sensor_number is 0, expected one of the light_sensors of this robot's model",
+        "pogobot_photosensors_read(): sensor_number is 0, expected none, since this robot's model has no light sensors",
+        "pogobot_motor_power_set(): motor is 1, expected none, since this robot's model has no motors; it moves",
     ):
         assert result.errors.count(line) == 1, result.errors
+
+
+def test_motor_that_the_model_lacks_is_told_and_without_power_it_is_not(parts: Path, tmp_path: Path) -> None:
+    for power, count in ((0, 0), (5, 1)):
+        result = run(parts, tmp_path / str(power), {**PLAIN, "parameters": {"left": 9, "back": power}})
+        told = (
+            "pogobot_motor_power_set(): motor is 2, expected one of the motors of this robot's model; it moves nothing"
+        )
+        assert result.errors.count(told) == count, result.text
+
+
+def test_robot_without_motors_is_pushed_in_the_run_that_repeats_it_too(parts: Path, tmp_path: Path) -> None:
+    pushed = {"type": "pogobot", "poses": [[560, 500, 0]], "motors": {}}
+    settings = {**PLAIN, "objects.pushed": pushed, "seed": 1, "parameters": {"right": 1023, "left": 1023}}
+    first = run(parts, tmp_path / "first", settings)
+    _, metadata = load_dataframe(tmp_path / "first" / "data.feather")
+    folder = tmp_path / "again"
+    folder.mkdir()
+    (folder / "again.yaml").write_text(yaml.safe_dump(metadata["resolved_configuration"], sort_keys=False))
+    again = run_command(parts, folder, ["-c", "again.yaml", "-g"])
+    assert again.table().equals(first.table())
+    assert first.frame()["x"].max() > 600.0
 
 
 def test_memory_of_the_model_bounds_what_programs_may_need(parts: Path, tmp_path: Path) -> None:
