@@ -4,7 +4,13 @@ from __future__ import annotations
 
 
 class ToolError(Exception):
-    """A tool cannot do what it is asked for. The message is one line: where, what, what was expected, what to do."""
+    """A tool cannot do what it is asked for. The message is one line: where, what, what was expected, what to do.
+
+    Attributes:
+        exit_code: That of a command which ends so.
+    """
+
+    exit_code = 2
 
 
 class AnalysisError(ToolError, ValueError):

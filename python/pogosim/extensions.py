@@ -6,11 +6,12 @@ listed, since reading what all installed packages offer takes longer than many c
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import importlib
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.machinery import PathFinder
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,6 +31,12 @@ Warn = Callable[[str], None]
 
 class ExtensionError(ToolError):
     """What was asked for cannot be had; says of which package it is, and what to do."""
+
+
+class PackageFailedError(ToolError):
+    """Code of another package has failed; says which package, how, and where."""
+
+    exit_code = 3  # as of a run whose program has failed
 
 
 class Own(NamedTuple):
@@ -141,6 +148,34 @@ class Table(NamedTuple):
                 f"{self.of(point)}: expected {self.expected}, found {described(found)}; update or uninstall the package"
             )
         return found
+
+    @contextlib.contextmanager
+    def calling(self, name: str, may_exit: bool = False) -> Iterator[None]:
+        """Call what an entry names. What code of another package raises becomes an error that says whose it is.
+
+        Errors that are meant for users pass: ToolError, and those of the system.
+
+        Args:
+            name: That of the entry.
+            may_exit: SystemExit passes, too.
+
+        Raises:
+            PackageFailedError: Something else was raised.
+        """
+        try:
+            yield
+        except (ToolError, OSError):
+            raise
+        except (Exception, SystemExit) as error:  # whatever a package does
+            point = self.find(name)
+            if point is None or isinstance(point, Own) or (may_exit and isinstance(error, SystemExit)):
+                raise
+            if sys.flags.dev_mode:
+                import traceback  # takes a while
+
+                traceback.print_exception(error)
+            told = f"{self.of(point)} {raised(error, point)}; PYTHONDEVMODE=1 shows the traceback"
+            raise PackageFailedError(told) from None
 
     def of(self, point: EntryPoint) -> str:
         """Return how messages call an entry of another package."""

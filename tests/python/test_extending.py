@@ -19,6 +19,7 @@ from running import ROOT, Run, build_folder, example, ran, run, write_scene
 PAGE = ROOT / "docs" / "extending.md"
 FILES = re.compile(r"^`([\w./]+)`:\n\n```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 GROUPS = ("optimizers", "analyses", "commands", "robot_models")
+SHOWN = "; PYTHONDEVMODE=1 shows the traceback"
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +172,7 @@ LISTING["robot_models"] = ["path", "--models"]
 KINDS = {"commands": "command", "analyses": "analysis", "optimizers": "optimiser", "robot_models": "robot models"}
 EXPECTED = {
     "commands": "a function main(arguments, prog) that returns the exit code",
-    "analyses": "a pogosim.reports.command_lines.Analysis",
+    "analyses": "a pogosim.reports.command_lines.Analysis with functions parser(prog) and analyze(options, prog)",
     "optimizers": "a class, made of a space and settings, with ask(), begin() and tell()",
     "robot_models": "a package, or the path of a folder, with YAML files in it",
 }
@@ -213,28 +214,107 @@ def test_package_that_cannot_be_imported(group: str, place: str, code: str, reas
     check_refused(tmp_path, group, "thing", problem)
 
 
-@pytest.mark.parametrize(
-    "points", ["np.zeros((0, 1))", "np.zeros(3)", "np.zeros((2, 2))", "np.full((2, 1), np.nan)", "None"]
-)
-def test_optimiser_that_asks_for_no_points(points: str, tmp_path: Path) -> None:
-    code = (
-        "import numpy as np\n"
-        "class Thing:\n"
-        "    def __init__(self, space, settings): pass\n"
-        "    def begin(self, answer): pass\n"
-        f"    def ask(self): return {points}\n"
-        "    def tell(self, answers): pass\n"
+def searched(folder: Path, **methods: str) -> Run:
+    """Run a search with an optimiser of a package, some methods of which do something else."""
+    bodies = {"__init__": "pass", "begin": "pass", "ask": "return np.full((2, 1), 0.5)", "tell": "pass"} | methods
+    arguments = {"__init__": "self, space, settings", "ask": "self"}
+    lines = [f"    def {name}({arguments.get(name, 'self, it')}): {body}\n" for name, body in bodies.items()]
+    install(folder, "lab", {"optimizers": "thing = lab:Thing"}, f"import numpy as np\nclass Thing:\n{''.join(lines)}")
+    write_scene(
+        folder,
+        {
+            "simulation_time": 0.1,
+            "parameters.run_duration_min": {"optimization_domain": {"type": "int", "min": 1, "max": 9}},
+        },
     )
-    install(tmp_path, "lab", {"optimizers": "thing = lab:Thing"}, code)
-    write_scene(tmp_path, {"parameters.run_duration_min": {"optimization_domain": {"type": "int", "min": 1, "max": 9}}})
     search = ["optimize", "-c", "scene.yaml", "-S", str(example("run_and_tumble")), "--optimizer", "thing"]
-    done = called(tmp_path, tmp_path, *search, "--max-evals", "5")
+    return called(folder, folder, *search, "--max-evals", "5")
+
+
+@pytest.mark.parametrize(
+    ("points", "found"),
+    [
+        ("np.zeros((0, 1))", "an array of shape (0, 1)"),
+        ("np.zeros(3)", "an array of shape (3,)"),
+        ("np.zeros((2, 2))", "an array of shape (2, 2)"),
+        ("np.full((2, 1), np.nan)", "nan among them"),
+        ("[[0.5], [7.0]]", "7 among them"),
+        ("[[0.5], [-1e-9]]", "-1e-09 among them"),
+        ("None", "nan among them"),
+        ("[[1], [1, 2]]", "[[1], [1, 2]]"),
+        ("'ab'", "'ab'"),
+    ],
+)
+def test_optimiser_that_asks_for_no_points_of_the_unit_cube(points: str, found: str, tmp_path: Path) -> None:
+    done = searched(tmp_path, ask=f"return {points}")
     assert done.code == 2, done.text
-    problem = (
-        "optimiser 'thing': ask() must return points, numbers of shape (points, 1), each from 0 to 1; found an array"
-    )
-    assert problem in done.errors
+    problem = "optimiser 'thing': ask() must return points, numbers of shape (points, 1), each from 0 to 1; found "
+    assert f"{problem}{found};" in done.errors
     assert "Traceback" not in done.text
+
+
+@pytest.mark.parametrize(("method", "line"), [("__init__", 3), ("begin", 4), ("ask", 5), ("tell", 6)])
+def test_optimiser_that_raises_is_told_in_a_line(method: str, line: int, tmp_path: Path) -> None:
+    done = searched(tmp_path, **{method: "{}['age']"})
+    entry = "optimiser 'thing' of the package lab 1.0 (pogosim.optimizers: lab:Thing)"
+    assert done.code == 3, done.text
+    assert done.errors.endswith(f"{entry} raised KeyError: 'age' ({tmp_path}/lab.py:{line}){SHOWN}\n")
+    assert "Traceback" not in done.text
+
+
+PARSER = "lambda prog: analysis_parser(prog, 'x')"
+BARE = "lambda prog: __import__('argparse').ArgumentParser()"
+NO_FUNCTIONS = f": expected {EXPECTED['analyses']}, found a value of type Analysis; update or uninstall the package"
+NO_PARSER = " raised TypeError: parser() returned 3, expected what analysis_parser() returns"
+NO_OPTION = " raised TypeError: its parser has no option for output_dir, which that of analysis_parser() has"
+
+
+@pytest.mark.parametrize(
+    ("parser", "analyze", "exit_code", "problem"),
+    [
+        ("None", "raising", 2, NO_FUNCTIONS),
+        (PARSER, "None", 2, NO_FUNCTIONS),
+        ("lambda prog: {}['age']", "raising", 3, " raised KeyError: 'age' ({folder}/lab.py:3)"),
+        ("lambda prog: 3", "raising", 3, NO_PARSER),
+        ("without_output", "raising", 3, NO_OPTION),
+        (PARSER, "raising", 3, " raised ValueError: too old ({folder}/lab.py:2)"),
+        (PARSER, "lambda options, prog: exit(4)", 3, " raised SystemExit: 4 ({folder}/lab.py:3)"),
+        (PARSER, "print", 0, None),
+    ],
+)
+def test_analysis_that_raises_is_told_in_a_line(
+    parser: str, analyze: str, exit_code: int, problem: str | None, tmp_path: Path
+) -> None:
+    code = (
+        "from pogosim.reports.command_lines import Analysis, Parser, analysis_parser\n"
+        "def raising(options, prog): raise ValueError('too old')\n"
+        f"def others(): return Analysis('x', {parser}, {analyze})\n"
+        "def without_output(prog):\n"
+        "    parser = Parser(prog=prog)\n"
+        "    parser.add_argument('-i', '--input')\n"
+        "    return parser\n"
+        "thing = others()\n"
+    )
+    install(tmp_path, "lab", {"analyses": "thing = lab:thing"}, code)
+    (tmp_path / "a.feather").touch()
+    done = called(tmp_path, tmp_path, "analyze", "thing", "-i", "a.feather")
+    assert done.code == exit_code, done.text
+    entry = "analysis 'thing' of the package lab 1.0 (pogosim.analyses: lab:thing)"
+    if problem is None:
+        assert done.errors == ""
+        return
+    shown = problem.format(folder=tmp_path) + (SHOWN if exit_code == 3 else "")
+    assert done.errors == f"pogosim analyze thing: {entry}{shown}\n"
+    helped = called(tmp_path, tmp_path, "analyze", "thing", "--help")
+    assert (helped.errors == done.errors) is (parser not in (PARSER, "without_output") or analyze == "None")
+
+
+def test_damaged_file_is_no_fault_of_the_package_that_analyses_it(packages: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.feather").write_bytes(b"ARROW1 of no use")
+    done = called(tmp_path, packages, "analyze", "turning", "-i", "a.feather", "-o", "out")
+    assert (done.code, done.output, len(done.errors.splitlines())) == (2, "", 1)
+    assert "a.feather" in done.errors
+    assert "my-lab" not in done.errors
 
 
 def test_analysis_whose_work_is_not_there(tmp_path: Path) -> None:
@@ -250,7 +330,7 @@ def test_analysis_whose_work_is_not_there(tmp_path: Path) -> None:
     assert line.endswith("lab:nosuch cannot be imported: module 'lab' has no attribute 'nosuch'")
 
 
-SHOWN = "; PYTHONDEVMODE=1 shows the traceback"
+NUMBERS = "expected a number from 0 to 255 or nothing"
 IN_AST = "(<unknown>, line 1) ({folder}/lab.py:3)"
 
 
@@ -262,6 +342,13 @@ IN_AST = "(<unknown>, line 1) ({folder}/lab.py:3)"
         ("    open('none.csv')", 2, "none.csv: no such file or directory"),
         ("    import pogosim.errors\n    raise pogosim.errors.ToolError('expected a file')", 2, "expected a file"),
         ("    raise SystemExit(7)", 7, None),
+        ("    raise SystemExit", 0, None),
+        ("    raise SystemExit('no such file')", 1, "no such file"),
+        ("    raise SystemExit(300)", 3, "{entry} raised TypeError: exit code 300, " + NUMBERS + SHOWN),
+        ("    return 256", 3, "{entry} raised TypeError: exit code 256, " + NUMBERS + SHOWN),
+        ("    return -1", 3, "{entry} raised TypeError: exit code -1, " + NUMBERS + SHOWN),
+        ("    return 'x'", 3, "{entry} raised TypeError: exit code 'x', " + NUMBERS + SHOWN),
+        ("    return 255", 255, None),
     ],
 )
 def test_command_that_raises_is_told_in_a_line(code: str, exit_code: int, problem: str | None, tmp_path: Path) -> None:

@@ -6,24 +6,20 @@ import functools
 import os
 import signal
 import sys
-import traceback
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import pogosim
 from pogosim.arguments import shown
 from pogosim.command.parser import complain, warn
 from pogosim.errors import ToolError
-from pogosim.extensions import ExtensionError, Own, Table, raised, takes
+from pogosim.extensions import ExtensionError, Own, Table, takes
 from pogosim.lines import say, say_error
 from pogosim.nearest_name import listed, unknown
 from pogosim.outputs import told
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
+ENDED_BY_TEXT = 1  # as of any program in Python that calls sys.exit("text")
 WRONG_USAGE = 2
-PACKAGE_FAILED = 3  # as of a run whose program has failed
+GREATEST_CODE = 255  # the system cuts others to this range
 INTERRUPTED = 130
 NO_READER = 141  # as a shell says of a program that SIGPIPE has ended
 
@@ -164,32 +160,34 @@ def run(name: str, arguments: Sequence[str]) -> int:
 
 def call(name: str, arguments: Sequence[str], prog: str) -> int:
     """Import a subcommand, and run it under a name; returns the exit code."""
-    point = COMMANDS.find(name)
-    if point is not None and not isinstance(point, Own):
-        return call_other(point, arguments, prog)
+    if not isinstance(COMMANDS.find(name), Own):
+        return call_other(name, arguments, prog)
     code: int | None = COMMANDS.load(name)(arguments, prog)
     return code or 0
 
 
-def call_other(point: EntryPoint, arguments: Sequence[str], prog: str) -> int:
+def call_other(name: str, arguments: Sequence[str], prog: str) -> int:
     """Run a subcommand of another package. What it raises is told in one line; returns the exit code."""
-    command = COMMANDS.loaded(point)
+    command = COMMANDS.load(name)
     try:
-        code = command(arguments, prog)
-        if not isinstance(code, int | None):
-            raise TypeError(f"returned {shown(code)}, expected a number or nothing")
-        return code or 0
+        with COMMANDS.calling(name, may_exit=True):
+            try:
+                code = command(arguments, prog)
+            except SystemExit as end:
+                code = end.code
+                if not isinstance(code, int | None):
+                    complain(prog, code)
+                    return ENDED_BY_TEXT
+            if not isinstance(code, int | None) or not 0 <= (code or 0) <= GREATEST_CODE:
+                expected = f"expected a number from 0 to {GREATEST_CODE} or nothing"
+                raise TypeError(f"exit code {shown(code)}, {expected}")
+            return code or 0
     except BrokenPipeError:
         raise
     except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         return complain(prog, told(error, "the output"))
-    except Exception as error:  # whatever a package does
-        if sys.flags.dev_mode:
-            traceback.print_exception(error)
-        complain(prog, f"{COMMANDS.of(point)} {raised(error, point)}; PYTHONDEVMODE=1 shows the traceback")
-        return PACKAGE_FAILED
 
 
 if __name__ == "__main__":

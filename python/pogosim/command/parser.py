@@ -50,7 +50,7 @@ def warnings_told(prog: str, *kinds: type[Warning]) -> Iterator[None]:
 
 
 def guarded(prog: str, run: Callable[[], int | None], place: object = "the output") -> int:
-    """Run a command; says in one line what keeps it from its end, and returns the exit code 2 then.
+    """Run a command; says in one line what keeps it from its end, and returns the exit code 2 or a ToolError's then.
 
     Args:
         prog: Name of the command.
@@ -66,9 +66,9 @@ def guarded(prog: str, run: Callable[[], int | None], place: object = "the outpu
 
 
 def complain(prog: str, problem: object) -> int:
-    """Print what is wrong; returns the exit code 2."""
+    """Print what is wrong; returns the exit code: that of a ToolError, 2 otherwise."""
     say_error(f"{prog}: {problem}")
-    return 2
+    return problem.exit_code if isinstance(problem, ToolError) else ToolError.exit_code
 
 
 def finite(text: str) -> float:

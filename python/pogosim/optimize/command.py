@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from pogosim.optimize.variables import Space
 
 EPILOG = """Settings can also stand in the section "optimization" of the configuration; the command line comes first.
-Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed; 130 interrupted."""
+Exit codes: 0 the search is complete; 2 usage, configuration or file error; 3 all candidates failed, or an optimiser of
+another package did; 130 interrupted."""
 
 log = logging.getLogger("pogosim.optimize")
 
@@ -142,7 +143,10 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
 
         with warnings_told(prog, AmbiguousStepsWarning):
             return optimize(parsed, configuration, settings, space, optimizer)
-    except (ToolError, NamesError) as error:
+    except ToolError as error:
+        log.error("%s", error)
+        return error.exit_code
+    except NamesError as error:
         log.error("%s", error)
     except OSError as error:
         log.error("%s: %s", error.filename or parsed.temp_base or Settings.temp_base, reason(error))

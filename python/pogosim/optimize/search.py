@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from pogosim.arguments import shown
 from pogosim.batch.rows import RUN_FAILED, Runs, kind_of
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import Evaluation, Journal
 from pogosim.optimize.objective import Judgement, Objective
 from pogosim.optimize.optimizers.base import Answer, Floats, Optimizer
+from pogosim.optimize.optimizers.table import OPTIMIZERS
 from pogosim.optimize.settings import COMMON, Settings
 from pogosim.optimize.variables import Space, Values, as_json
 
@@ -81,6 +83,7 @@ class Search:
         Raises:
             BatchError: Runs cannot be done.
             OptimizeError: The journal is that of another search, or the optimiser asks for no points.
+            PackageFailedError: The optimiser, of another package, has failed.
         """
         generation = 0
         while len(self.history) < self.settings.max_evals:
@@ -91,9 +94,10 @@ class Search:
             evaluations = self.evaluated(generation, points[: self.settings.max_evals - len(self.history)])
             self.history += evaluations
             answers = [Answer(e.number, np.array(e.point), e.judgement) for e in evaluations]
-            if is_first:
-                self.optimizer.begin(answers.pop(0))
-            self.optimizer.tell(answers)
+            with OPTIMIZERS.calling(self.settings.optimizer):
+                if is_first:
+                    self.optimizer.begin(answers.pop(0))
+                self.optimizer.tell(answers)
             self.say(generation, evaluations)
             yield
 
@@ -102,16 +106,24 @@ class Search:
 
         Raises:
             OptimizeError: The optimiser, which may be of another package, asks for none, or for something else.
+            PackageFailedError: It has failed.
         """
-        asked = self.optimizer.ask()
-        shape = np.shape(asked)
+        with OPTIMIZERS.calling(self.settings.optimizer):
+            asked = self.optimizer.ask()
         columns = len(self.space.init)
-        if len(shape) != 2 or shape[0] == 0 or shape[1] != columns or not np.all(np.isfinite(asked)):
-            raise OptimizeError(
-                f"optimiser '{self.settings.optimizer}': ask() must return points, numbers of shape (points, "
-                f"{columns}), each from 0 to 1; found an array of shape {shape}; update its package, or take another"
-            )
-        return asked
+        try:
+            points = np.array(asked, dtype=float)
+        except (TypeError, ValueError):
+            found = shown(asked)
+        else:
+            outside = points[~((points >= 0.0) & (points <= 1.0))]
+            found = f"{outside[0]:g} among them" if outside.size else f"an array of shape {points.shape}"
+            if points.ndim == 2 and points.shape[1] == columns and points.size and not outside.size:
+                return points
+        raise OptimizeError(
+            f"optimiser '{self.settings.optimizer}': ask() must return points, numbers of shape (points, {columns}), "
+            f"each from 0 to 1; found {found}; update its package, or take another"
+        )
 
     def evaluated(self, generation: int, points: Floats) -> list[Evaluation]:
         """Return the evaluations of points, in their order."""

@@ -41,7 +41,7 @@ class Analysis:
             return self.analyze
         try:
             found: Analyze = located(self.analyze)
-        except (ImportError, AttributeError) as error:
+        except (Exception, SystemExit) as error:  # whatever a module of a package does when it is imported
             raise ExtensionError(f"{self.analyze} cannot be imported: {said(error)}") from None
         return found
 

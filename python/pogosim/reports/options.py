@@ -23,7 +23,10 @@ from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
 # What pandas, numpy and the libraries behind the analyses raise for values that no run has.
-STRANGE_DATA = (ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError, TypeError, ValueError)
+STRANGE_DATA = (
+    *(ArithmeticError, IndexError, KeyError, MemoryError, RuntimeError, TypeError, ValueError),
+    pyarrow.ArrowException,
+)
 
 OUTPUT_FOLDERS = ("arenas", "stats", "traces")
 OUTPUT_SUFFIXES = (".csv", ".gif", ".json", ".pdf", ".pkl", ".png", ".txt")
@@ -33,17 +36,21 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     """Read the runs that the options name. A file of a killed run is read as far as it goes, with a warning.
 
     Raises:
-        AnalysisError: There is nothing to analyse.
-        OSError, ValueError: A file cannot be read.
+        AnalysisError: There is nothing to analyse, or a file is damaged.
+        OSError: A file cannot be read.
     """
     files = options.input[0] if len(options.input) == 1 else options.input
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        rows, metadata = load_dataframe(files)
         try:
+            rows, metadata = load_dataframe(files)
             runs = trajectories_of(rows, metadata, options.category)
         except AnalysisError as error:
             raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
+        except (ToolError, OSError):
+            raise
+        except STRANGE_DATA as error:
+            raise AnalysisError(unfit(error)) from error
         finally:
             for warning in caught:
                 warn(prog, warning.message)
@@ -101,7 +108,7 @@ def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
 
 
 def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Namespace, str], None]) -> int:
-    """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code, 0 or 2."""
+    """Do an analysis, and say in one line where its results are, or what is wrong. Returns the exit code."""
     try:
         with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning), without_tex():
             work(options, prog)
@@ -111,6 +118,11 @@ def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Na
     except OSError as error:
         # Nothing fits a pattern; otherwise, what is written has no name.
         return complain(prog, str(error) if error.errno is None else told(error, options.output_dir))
-    except (*STRANGE_DATA, pyarrow.ArrowException) as error:
-        return complain(prog, f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0])
+    except STRANGE_DATA as error:
+        return complain(prog, unfit(error))
     return 0
+
+
+def unfit(error: Exception) -> str:
+    """Return what is said of data for which a library has raised something, in a line."""
+    return f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0]

@@ -56,10 +56,13 @@ def optimizer_for(space: Space, settings: Settings) -> Optimizer:
 
     Raises:
         OptimizeError: There is none of that name, it cannot be imported, or it needs a package that is not installed.
+        PackageFailedError: It is of another package, and cannot be made.
     """
     check_optimizer(settings)
     try:
-        made: Optimizer = OPTIMIZERS.load(settings.optimizer)(space, settings)
+        kind = OPTIMIZERS.load(settings.optimizer)
+        with OPTIMIZERS.calling(settings.optimizer):
+            made: Optimizer = kind(space, settings)
     except ExtensionError as error:
         raise OptimizeError(f"{settings.place_of('optimizer')}: {error}") from None
     return made
