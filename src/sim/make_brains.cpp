@@ -92,7 +92,7 @@ void check_needs_no_program(World const& world) {
         if (has_robots && category.spec.robot && needs_program(category.spec.robot->brain)) {
             throw ConfigError(
                 fmt::format("category '{}' needs a program, and none is given: name one, or say what drives its robots "
-                            "(brain: host, or a script)",
+                            "(brain: a script or a firmware; host in Python)",
                             category.name));
         }
     }

@@ -23,6 +23,7 @@ from batches import (
     write_options,
 )
 from pogosim.batch.command_line import parser
+from pogosim.batch.run_files import with_files_beside
 from pogosim.batch.subcommands import SUBCOMMANDS, subparser
 from pogosim.utils import load_dataframe
 from running import ROOT, Run, example
@@ -380,8 +381,8 @@ def test_options_in_lists_are_combined_by_every_subcommand(tmp_path: Path) -> No
         (
             ["run", "-c", "many.yaml"],
             2,
-            "the following arguments are required: -S/--simulator-binary; nothing else drives the robots of "
-            "objects.robots (brain)",
+            "the following arguments are required: -S/--simulator-binary; category 'robots' needs a program, and none "
+            "is given: ",
         ),
         (["task", "-c", "many.yaml"], 2, "the following arguments are required"),
         (["merge"], 2, "the following arguments are required: FOLDER"),
@@ -421,7 +422,43 @@ def test_missing_program_is_the_first_thing_said(tmp_path: Path) -> None:
     write_options(tmp_path, {"objects.robots.brain": "program"})
     result = run_main(tmp_path, ["-c", "many.yaml", "-o", "results", "-t", "tmp"])
     assert (result.code, result.output) == (1, "")
-    assert "-S/--simulator-binary; nothing else drives the robots of objects.robots (brain)" in result.errors
+    assert "-S/--simulator-binary; category 'robots' needs a program, and none is given: " in result.errors
+
+
+def test_robots_of_a_host_are_refused_by_batches(tmp_path: Path) -> None:
+    write_options(tmp_path, {"objects.robots.brain": "host"})
+    for words in ([], ["run"], ["task", "--seed", "3"]):
+        temporary = [] if "task" in words else ["-t", "tmp"]
+        result = run_main(tmp_path, [*words, "-c", "many.yaml", "-o", "results", *temporary])
+        assert (result.code, result.output) == (2, "")
+        assert "objects.robots.brain: host: there is no host on the command line; run it from Python" in result.errors
+    assert not (tmp_path / "results").exists()
+
+
+def test_batches_need_a_program_where_the_simulator_does(tmp_path: Path) -> None:
+    """The brain may stand in the model of the robots, and categories without robots have none."""
+    (tmp_path / "dancer.yaml").write_text("brain: {script: [{time_s: 0, motors: [500, 500, 0]}]}\n")
+    write_options(
+        tmp_path,
+        {
+            "boundary_condition": "periodic",
+            "objects.robots.robot_model": "dancer.yaml",
+            "objects.walls": {"type": "pogowall", "geometry": "arena"},
+            "objects.others": {"type": "pogobot", "nb": 0},
+        },
+    )
+    result = run_main(tmp_path, ["-c", "many.yaml", "-o", "results", "-t", "tmp"])
+    assert result.code == 0, result.errors
+
+
+def test_firmware_is_found_beside_the_configuration(tmp_path: Path) -> None:
+    """Brains that are no files have names of files, too."""
+    for name in ("robot.elf", "host", "program"):
+        (tmp_path / name).touch()
+    brains = ["robot.elf", {"firmware": "robot.elf"}, "host", "program", "elsewhere.elf"]
+    found = with_files_beside({"objects": {"robots": [{"brain": brain} for brain in brains]}}, tmp_path)
+    there = str(tmp_path / "robot.elf")
+    assert [own["brain"] for own in found["objects"]["robots"]] == [there, {"firmware": there}, *brains[2:]]
 
 
 def test_help_lists_subcommands_and_their_options(tmp_path: Path) -> None:

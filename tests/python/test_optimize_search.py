@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,11 +13,15 @@ import pandas as pd
 import pytest
 import yaml
 from batches import run_main, script
+from pogosim.batch.attempts import command_of_users
 from pogosim.confidence import mean_over_runs
 from pogosim.pogoptim import main
 from pogosim.utils import load_dataframe
-from running import example, run_command
+from project import CLEAN
+from running import build_folder, example, ran, run_command, write_scene
 from searches import OBJECTIVE, history, options, search, summary, write_search
+
+SIMULATING = CLEAN | {"POGOSIM_DIR": str(build_folder())}
 
 # Chance that depends on the seed of the run alone: the same for all candidates that have the same seeds.
 NOISY = """
@@ -83,6 +88,34 @@ def test_best_configuration_runs_in_the_simulator_as_it_is(tmp_path: Path) -> No
     assert not (tmp_path / "opt_out" / "best_results.feather").exists()
     parameters = load_dataframe(tmp_path / "data.feather")[1]["configuration"]["parameters"]
     assert {f"parameters.{name}": value for name, value in parameters.items()} == summary(tmp_path)["best_values"]
+
+
+def test_search_needs_no_program_where_the_simulator_needs_none(tmp_path: Path) -> None:
+    """The command that it tells at the end runs what it has found."""
+    brain = {"script": [{"time_s": 0, "motors": [500, 500, 0]}]}
+    speed = {"optimization_domain": {"type": "float", "min": 10, "max": 100}}
+    scene = {"simulation_time": 0.5, "objects.robots.brain": brain, "objects.robots.max_linear_speed": speed}
+    write_scene(tmp_path, scene)
+    words = ["-c", "scene.yaml", "--max-evals", "2", "--final-runs", "0", "-o", "opt_out"]
+    result = run_main(tmp_path, words, main)
+    assert result.code == 0, result.errors
+    (command,) = re.findall(r"run it: pogosim (.*)$", result.errors, re.MULTILINE)
+    done = ran(tmp_path, sys.executable, "-m", "pogosim", *command.split(), "-g", "-q", env=SIMULATING)
+    assert (done.code, done.errors) == (0, "")
+    write_scene(tmp_path, scene | {"objects.robots.brain": "program"})
+    refused = run_main(tmp_path, [*words[:-1], "other"], main)
+    assert refused.code == 2
+    assert "-S/--simulator-binary; category 'robots' needs a program, and none is given: " in refused.errors
+
+
+def test_command_of_a_search_names_what_pogosim_run_takes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    best = Path("out") / "best_config.yaml"
+    for name in ("robot.elf", "my program", "own.py"):
+        Path(name).touch()
+    assert command_of_users("robot.elf", best) == "pogosim run robot.elf -c out/best_config.yaml"
+    assert command_of_users("my program", best) == "pogosim run 'my program' -c out/best_config.yaml"
+    assert command_of_users("own.py", best) == "python own.py -c out/best_config.yaml"
 
 
 def test_history_and_results_are_the_same_whatever_the_number_of_workers(tmp_path: Path) -> None:

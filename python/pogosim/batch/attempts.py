@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pogosim.batch.errors import reason
-from pogosim.batch.identity import PYTHON
+from pogosim.batch.identity import PYTHON, find_program
 from pogosim.batch.run import FRAMES, Outcome, Task
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.run_log import CONFIGURATION, LOG, OWN, tail, warnings_in, with_last_line
@@ -24,7 +24,7 @@ from pogosim.batch.run_server import ServerLostError
 from pogosim.batch.simulators import simulators
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.firmware import is_firmware
-from pogosim.installation import find_installation
+from pogosim.installation import InstallationError, find_installation
 
 REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
 IN_A_FILE = re.compile(r"Error: [^\s,]+:\d+: ")  # of a robot model, a script, an arena
@@ -182,6 +182,18 @@ def starting(program: str) -> list[str]:
     if is_firmware(Path(program)):
         return [str(find_installation().without_program), "--firmware", program]
     return [sys.executable, program] if program.endswith(PYTHON) else [program]
+
+
+def command_of_users(program: str, configuration: Path) -> str:
+    """Return the command line with which users run a configuration as a batch or a search has run it."""
+    path = program if Path(program).exists() else str(find_program(program))
+    try:
+        is_none = Path(path) == find_installation().without_program
+    except InstallationError:
+        return shlex.join([*starting(path), "-c", str(configuration)])
+    if path.endswith(PYTHON):
+        return shlex.join(["python", path, "-c", str(configuration)])
+    return shlex.join(["pogosim", "run", *([] if is_none else [path]), "-c", str(configuration)])
 
 
 def arguments_of(task: Task, number: int, configuration: str) -> list[str]:

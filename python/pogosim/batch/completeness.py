@@ -106,7 +106,10 @@ def compared(entries: Mapping[str, Any]) -> dict[str, Any]:
     """
     kept = {key: value for key, value in entries.items() if key != CHOICES}
     values = {path: for_json(value) for path, value in leaves(kept) if path not in NOT_COMPARED and value != {}}
-    return {path: PurePath(str(value)).name if is_file_beside(path) else value for path, value in values.items()}
+    return {
+        path: PurePath(value).name if isinstance(value, str) and is_file_beside(path) else value
+        for path, value in values.items()
+    }
 
 
 def warn_of_others(artifacts: Sequence[TaskArtifact], expected: Expected) -> None:

@@ -14,7 +14,11 @@ ALL_OUTPUTS = (*OUTPUTS, *OUTPUTS_ASKED_FOR)
 
 FILES_BESIDE = ("arena_file", "formation_filename", "magnetometer.csv.file")
 # The same in entries of maps: categories of objects, and links.
-FILES_OF_ENTRIES = {"objects": ("robot_model", "brain.script", "function_costs"), "links": ("file",)}
+FILES_OF_ENTRIES = {
+    "objects": ("robot_model", "brain", "brain.script", "brain.firmware", "function_costs"),
+    "links": ("file",),
+}
+NO_FILES = {"brain": ("program", "host")}  # values that are none
 
 
 def is_file_beside(setting: str) -> bool:
@@ -95,7 +99,8 @@ def with_own_files(node: Any, settings: Sequence[str], folder: Path) -> Any:
         return node
     node = {name: with_own_files(own, settings, folder) for name, own in node.items()}
     for setting in settings:
-        if (name := value_at(node, setting)) is not None:
+        name = value_at(node, setting)
+        if isinstance(name, str) and name not in NO_FILES.get(setting, ()):
             node = changed(node, setting, found_beside(name, folder))
     return node
 

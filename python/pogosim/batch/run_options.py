@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
+import subprocess
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
 from pogosim.arguments import is_text
-from pogosim.batch.errors import BatchError, NoProgramError, at_least
+from pogosim.batch.errors import BatchError, NoProgramError, at_least, cannot
 from pogosim.batch.jobqueue_options import add_jobqueue_options, asked_jobs
 from pogosim.batch.seeds import seeds_between
 from pogosim.batch.slurm_options import add_slurm_options
@@ -99,6 +101,11 @@ def add_retry_options(options: argparse.ArgumentParser) -> None:
     )
 
 
+# What the simulator says.
+OF_SIMULATOR = "Error: "
+NEEDS_PROGRAM = "needs a program, and none is given"
+NEEDS_HOST = "there is no host on the command line"
+
 PROGRAM_HELP = "program compiled for Pogosim; needed if a category has none of its own (brain: a firmware or a script)"
 
 
@@ -118,23 +125,40 @@ def check_names(arguments: argparse.Namespace) -> None:
 def give_program(arguments: argparse.Namespace) -> None:
     """If no program is named and no category needs one, name what runs configurations without a program.
 
+    The simulator decides, for what a single run takes of the options. All else that it finds wrong is told by the runs.
+
     Raises:
         NoProgramError: A category needs a program.
-        BatchError: The configuration cannot be read.
+        BatchError: A category needs another process to drive it, or the configuration cannot be read.
+        InstallationError: There is no simulator.
     """
     if arguments.simulator_binary is not None:
         return
     from pogosim.batch.configuration import Configuration
+    from pogosim.extensions import MODELS_VARIABLE, models_path
     from pogosim.installation import find_installation
-    from pogosim.object_facts import entries_in
 
-    for own in entries_in(Configuration(arguments.config).of_one_run()):
-        if "robot" in own.has and str(own.settings.get("brain", "program")) in ("program", "host", "None"):
-            raise NoProgramError(
-                "the following arguments are required: -S/--simulator-binary; nothing else drives the robots of "
-                f"objects.{own.category} (brain)"
-            )
-    arguments.simulator_binary = str(find_installation().without_program)
+    Configuration(arguments.config).of_one_run()  # says what is wrong with options
+    without_program = str(find_installation().without_program)
+    try:
+        check = subprocess.run(
+            [without_program, "--check-config", f"--config={arguments.config}"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            check=False,
+            text=True,
+            errors="replace",
+            env=os.environ | {MODELS_VARIABLE: models_path(lambda _: None)},  # the runs warn
+        )
+    except OSError as error:
+        raise cannot("start", without_program, error) from None
+    for line in check.stderr.splitlines():
+        if line.startswith(OF_SIMULATOR) and NEEDS_PROGRAM in line:
+            problem = line.removeprefix(OF_SIMULATOR)
+            raise NoProgramError(f"the following arguments are required: -S/--simulator-binary; {problem}")
+        if line.startswith(OF_SIMULATOR) and NEEDS_HOST in line:
+            raise BatchError(line.removeprefix(OF_SIMULATOR))
+    arguments.simulator_binary = without_program
 
 
 def asked_seeds(arguments: argparse.Namespace) -> Sequence[int] | str | None:

@@ -15,7 +15,15 @@ from pogosim.batch.ending import catch_signals, start_logging
 from pogosim.batch.errors import reason
 from pogosim.batch.jobqueue_options import add_jobqueue_options
 from pogosim.batch.names import NamesError
-from pogosim.batch.run_options import INTERRUPTED, ISOLATED, WRONG, add_retry_options, check_names
+from pogosim.batch.run_options import (
+    INTERRUPTED,
+    ISOLATED,
+    PROGRAM_HELP,
+    WRONG,
+    add_retry_options,
+    check_names,
+    give_program,
+)
 from pogosim.batch.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
 from pogosim.errors import AmbiguousStepsWarning, ToolError
@@ -48,7 +56,7 @@ def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
     )
     add = options.add_argument
     add("-c", "--config", required=True, help="configuration in which some keys have an optimization_domain (YAML)")
-    add("-S", "--simulator-binary", required=True, metavar="PROGRAM", help="program compiled for Pogosim")
+    add("-S", "--simulator-binary", metavar="PROGRAM", help=PROGRAM_HELP)
     add("-r", "--runs", type=int, metavar="N", help=f"runs per candidate ({usual.runs})")
     add("-O", "--objective", metavar="FILE.py", help="Python file with the function objective_fn(df) (mean MSD)")
     add("--objective-func", metavar="NAME", help="name of that function (objective_fn, or else compute_objective)")
@@ -138,6 +146,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogoptim") -> int:
         settings = settings_from(section, vars(parsed), configuration.where, lambda text: log.warning("%s", text))
         check_optimizer(settings)
         space = space_of(configuration)
+        give_program(parsed)
         optimizer = optimizer_for(space, settings)
         from pogosim.optimize.execution import optimize  # takes a while
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from pogosim.batch.attempts import command_of_users
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.rows import Finished
@@ -101,7 +102,7 @@ def finish(folder: Path, search: Search, configuration: Configuration, wall_cloc
     if archive is not None:
         cells = f"{archive['cells_filled']} of {math.prod(archive['shape'])} cells"
         log.info("Archive: %s filled; see %s and %s", cells, folder / ARCHIVE, folder / ELITES)
-    log.info("Written to %s; run it: %s -c %s", folder, search.runs.program, folder / BEST)
+    log.info("Written to %s; run it: %s", folder, command_of_users(search.runs.program, folder / BEST))
     return True
 
 
