@@ -68,11 +68,12 @@ def is_file_name(text: str) -> bool:
 
 
 def number(value: Any, default: float) -> float:
-    """Return a configuration's value as a number; `default` if it is none."""
+    """Return a configuration's value as a finite number; `default` if it is none."""
     try:
-        return float(value)
-    except (TypeError, ValueError):
+        found = float(value)
+    except (TypeError, ValueError, OverflowError):
         return default
+    return found if math.isfinite(found) else default
 
 
 @dataclass(frozen=True)

@@ -129,13 +129,36 @@ def test_light_of_a_kind_that_only_the_simulator_knows_is_said_not_to_be_drawn(d
     assert len(swarm.lamps) == 1
 
 
-@pytest.mark.parametrize("facts", [None, [], {"mixed": [{}]}, {"mixed": 3}, {"boxes": [{"has": 7}]}])
+@pytest.mark.parametrize(
+    "facts", [None, [], {"mixed": [{}]}, {"mixed": 3}, {"boxes": [{"has": 7}]}, {"mixed": [{"has": ["body"]}]}]
+)
 def test_files_without_facts_go_by_the_types(data: Path, tmp_path: Path, facts: Any) -> None:
     rows, _ = load_dataframe(data)
     old = changed(data, tmp_path / "old.feather", facts)
     assert read_recording(old).last.kinds == read_recording(data).last.kinds
     told = with_categories(rows.drop(columns="robot_category"), load_dataframe(old)[1])
     assert told["robot_category"].tolist() == rows["robot_category"].tolist()
+
+
+KEYS = {"communication_radius": 50, "max_linear_speed": 70, "dot_radius": 4, "rect_thickness": 6}
+FACTS = {"infrared_range_mm": 60.0, "top_speed_mm_s": 80.0, "half_thickness_mm": 2.5}
+
+
+def told_of(facts: dict[str, Any]) -> dict[str, float]:
+    """Return what an entry with keys for all has, by the facts of the file."""
+    told = {"has": ["body", "membrane", "robot", "motors"], "segments": True, **facts}
+    (entry,) = entries_in({"objects": {"ring": KEYS}}, {"ring": [told]})
+    return {name: getattr(entry, name) for name in FACTS}
+
+
+def test_facts_of_the_file_count_more_than_keys() -> None:
+    assert told_of(FACTS) == FACTS
+    assert told_of({}) == {"infrared_range_mm": 50.0, "top_speed_mm_s": 70.0, "half_thickness_mm": 3.0}
+
+
+@pytest.mark.parametrize("value", ["inf", float("inf"), float("nan"), "far", None, [1], 10**400])
+def test_facts_that_are_no_finite_numbers_are_none(value: Any) -> None:
+    assert told_of(dict.fromkeys(FACTS, value)) == told_of({})
 
 
 def test_several_runs_have_the_facts_in_common(tmp_path: Path) -> None:
