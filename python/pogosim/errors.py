@@ -4,7 +4,9 @@ from __future__ import annotations
 
 
 class ToolError(Exception):
-    """A tool cannot do what it is asked for. The message is one line: where, what, what was expected, what to do.
+    """A tool cannot do what it is asked for. The message says where, what, what was expected, what to do; in a line.
+
+    That of a command of another package may have more lines.
 
     Attributes:
         exit_code: That of a command which ends so.

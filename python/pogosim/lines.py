@@ -21,6 +21,11 @@ def printable(text: object) -> str:
     return "".join(c if c.isprintable() or unicodedata.category(c) == "Zs" else escaped(c) for c in line)
 
 
+def printable_lines(text: object) -> str:
+    """Return a text of one or more lines, with all else escaped; blanks at its end are left out."""
+    return "\n".join(map(printable, str(text).rstrip().split("\n")))
+
+
 def escaped(character: str) -> str:
     """Return a character as Python writes it in a string."""
     return character.encode("unicode_escape").decode("ascii")

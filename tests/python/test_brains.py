@@ -268,6 +268,13 @@ def error_of(folder: Path, settings: dict[str, Any]) -> str:
     return str(error.value)
 
 
+def test_each_mistake_of_a_configuration_has_its_line(tmp_path: Path) -> None:
+    said = error_of(tmp_path, {**ALONE, "time_step": -1, "objects.robots.radius": -1})
+    assert len(said.splitlines()) == 2, said
+    assert ["time_step" in line for line in said.splitlines()] == [True, False]
+    assert "\\n" not in said
+
+
 def test_mistakes_are_told(tmp_path: Path) -> None:
     assert "category 'robots' needs a program, and none is given" in error_of(tmp_path, ALONE)
     brain = "objects.robots.brain"
@@ -417,3 +424,21 @@ def test_assigned_powers_must_be_whole(tmp_path: Path) -> None:
             with pytest.raises(pogosim.ConfigurationError, match=r"brain\.leds takes whole numbers from 0 to 255"):
                 brain.leds = bad
         assert (brain.leds == [255, 0, 7]).all()
+        for flags in (True, [[True, False, True]]):
+            with pytest.raises(pogosim.ConfigurationError, match=r"brain\.motors takes whole numbers .*, found True;"):
+                brain.motors = flags
+
+
+def test_advice_to_scale_is_for_what_has_a_scale(tmp_path: Path) -> None:
+    with hosted(tmp_path, HOST) as sim:
+        brain = sim.brain("robots")
+        said = {}
+        for name in ("motors", "leds", "send_bytes", "send_length", "send_face"):
+            with pytest.raises(pogosim.ConfigurationError) as error:
+                setattr(brain, name, 0.5)
+            said[name] = str(error.value)
+        assert said["motors"].endswith("found 0.5; scale and round what is from 0 to 1, such as np.rint(1023 * values)")
+        assert said["leds"].endswith("such as np.rint(255 * values)")
+        assert said["send_bytes"] == "brain.send_bytes takes whole numbers from 0 to 255, found 0.5"
+        assert said["send_length"] == "brain.send_length takes whole numbers from -1 to 382, found 0.5"
+        assert said["send_face"] == "brain.send_face takes whole numbers from -1 to 3, found 0.5"

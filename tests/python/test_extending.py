@@ -341,6 +341,7 @@ IN_AST = "(<unknown>, line 1) ({folder}/lab.py:3)"
         ("    import ast\n    ast.parse('(')", 3, "{entry} raised SyntaxError: '(' was never closed " + IN_AST + SHOWN),
         ("    open('none.csv')", 2, "none.csv: no such file or directory"),
         ("    import pogosim.errors\n    raise pogosim.errors.ToolError('expected a file')", 2, "expected a file"),
+        ("    import pogosim.errors\n    raise pogosim.errors.ToolError('a\\nb\\t')", 2, "a\nb"),
         ("    raise SystemExit(7)", 7, None),
         ("    raise SystemExit", 0, None),
         ("    raise SystemExit('no such file')", 1, "no such file"),

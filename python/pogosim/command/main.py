@@ -13,7 +13,7 @@ from pogosim.arguments import shown
 from pogosim.command.parser import complain, warn
 from pogosim.errors import ToolError
 from pogosim.extensions import ExtensionError, Own, Table, takes
-from pogosim.lines import say, say_error
+from pogosim.lines import printable_lines, say, say_error
 from pogosim.nearest_name import listed, unknown
 from pogosim.outputs import told
 
@@ -185,7 +185,8 @@ def call_other(name: str, arguments: Sequence[str], prog: str) -> int:
     except BrokenPipeError:
         raise
     except ToolError as error:
-        return complain(prog, error)
+        say_error(*printable_lines(f"{prog}: {error}").split("\n"))
+        return error.exit_code
     except OSError as error:
         return complain(prog, told(error, "the output"))
 

@@ -17,7 +17,7 @@ RECEIVED = np.dtype([(name, "<i4") for name in ("robot", "sender", "face", "leng
 MOST_BYTES = 382
 
 
-def whole(name: str, values: npt.ArrayLike, limits: tuple[int, int], meaning: str) -> npt.NDArray[Any]:
+def whole(name: str, values: npt.ArrayLike, limits: tuple[int, int], meaning: str, scale: str = "") -> npt.NDArray[Any]:
     """Return values that an array of whole numbers can take as they are.
 
     Args:
@@ -25,23 +25,22 @@ def whole(name: str, values: npt.ArrayLike, limits: tuple[int, int], meaning: st
         values: To be assigned.
         limits: The least and the greatest number that the array can hold.
         meaning: Those that make sense, as words.
+        scale: What values from 0 to 1 may be multiplied by; empty: they are no shares of anything.
 
     Raises:
-        ConfigurationError: Some are no whole numbers, or beyond the limits.
+        ConfigurationError: Some are no whole numbers (as True is), or beyond the limits.
     """
     found = np.asarray(values)
     is_fine = np.zeros(found.shape, dtype=bool)
-    if found.dtype.kind in "iub":
+    if found.dtype.kind in "iu":
         is_fine = np.asarray((found >= limits[0]) & (found <= limits[1]))
     elif found.dtype.kind == "f":
         is_fine = np.asarray((found == np.rint(found)) & (found >= limits[0]) & (found <= limits[1]))
     if not is_fine.all():
         wrong = found[~is_fine].flat[0]
-        text = f"{wrong:g}" if found.dtype.kind in "iubf" else shown(wrong)
-        raise ConfigurationError(
-            f"brain.{name} takes whole numbers {meaning}, found {text}; scale and round what is from 0 to 1, such as "
-            f"np.rint({meaning.rpartition(' ')[2]} * values)"
-        )
+        text = f"{wrong:g}" if found.dtype.kind in "iuf" else shown(wrong.item() if found.dtype.kind == "b" else wrong)
+        advice = f"; scale and round what is from 0 to 1, such as np.rint({scale} * values)" if scale else ""
+        raise ConfigurationError(f"brain.{name} takes whole numbers {meaning}, found {text}{advice}")
     return found
 
 
@@ -69,7 +68,7 @@ class BrainArrays:
 
     @motors.setter
     def motors(self, values: npt.ArrayLike) -> None:
-        self.motors[...] = whole("motors", values, (-(2**31), 2**31 - 1), "from -1023 to 1023")
+        self.motors[...] = whole("motors", values, (-(2**31), 2**31 - 1), "from -1023 to 1023", scale="1023")
 
     @property
     def leds(self) -> npt.NDArray[np.uint8]:
@@ -78,7 +77,7 @@ class BrainArrays:
 
     @leds.setter
     def leds(self, values: npt.ArrayLike) -> None:
-        self.leds[...] = whole("leds", values, (0, 255), "from 0 to 255")
+        self.leds[...] = whole("leds", values, (0, 255), "from 0 to 255", scale="255")
 
     @property
     def send_bytes(self) -> npt.NDArray[np.uint8]:
@@ -138,7 +137,7 @@ class Brain(BrainArrays):
 
     Rows are the robots of the category, in the order of the arrays of the simulation. Between two steps, write
     `motors`, `leds` and messages, and read the rest: nothing is copied. Each robot takes what is written at its next
-    tick, 60 times per second of its own clock, and its sensors are those of its last tick.
+    tick, every 16 ms of its own clock, and its sensors are those of its last tick.
 
     Arrays may be assigned, which copies values into them: `brain.motors = powers`, `brain.leds //= 2`.
 

@@ -35,7 +35,7 @@ from typing import Any
 from pogosim import __version__
 from pogosim.extensions import let_find_models
 from pogosim.installation import InstallationError, find_installation
-from pogosim.lines import printable
+from pogosim.lines import printable_lines
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 
 DELAY_S = 0.05  # in which the finaliser returns
@@ -222,7 +222,7 @@ def check(status: int) -> int:
 def error_of(status: int, message: bytes) -> SimulationError:
     """Return the error that a status of the library stands for."""
     kind = ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError
-    return kind(printable(message.decode("utf-8", "replace")))
+    return kind(printable_lines(message.decode("utf-8", "replace")))
 
 
 class OpenRun:
