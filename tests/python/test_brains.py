@@ -6,6 +6,7 @@ import gc
 import logging
 import math
 import re
+import sys
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,8 @@ import pogosim
 import pytest
 import yaml
 from conftest import Compile
-from running import SHARED, compile_program, run, write_scene
+from project import CLEAN
+from running import ROOT, SHARED, build_folder, compile_program, ran, run, write_scene
 
 ALONE: dict[str, Any] = {
     "arena_file": "arenas/square.csv",
@@ -442,3 +444,18 @@ def test_advice_to_scale_is_for_what_has_a_scale(tmp_path: Path) -> None:
         assert said["send_bytes"] == "brain.send_bytes takes whole numbers from 0 to 255, found 0.5"
         assert said["send_length"] == "brain.send_length takes whole numbers from -1 to 382, found 0.5"
         assert said["send_face"] == "brain.send_face takes whole numbers from -1 to 3, found 0.5"
+
+
+def test_examples_of_the_page_run(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "brains.md").read_text()
+    (scene,) = re.findall(r"^    # conf\.yaml\n((?:    .*\n)+)", page, re.MULTILINE)
+    entries = yaml.safe_load(scene)
+    entries["objects"]["robots"]["nb"] = 20
+    square = {"arena_file": str(ROOT / "arenas" / "disk.csv"), "arena_surface": 3e5, "simulation_time": 1}
+    files = {"data_filename": "", "enable_console_logging": False}
+    (tmp_path / "conf.yaml").write_text(yaml.safe_dump({**entries, **square, **files}))
+    policy, receiving = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    told = "print(sorted({tuple(led) for led in sim.leds[:, 0].tolist()}))\n"
+    (tmp_path / "example.py").write_text(policy + receiving + f"    {told}")
+    done = ran(tmp_path, sys.executable, "example.py", env=CLEAN | {"POGOSIM_DIR": str(build_folder())})
+    assert (done.code, done.output) == (0, "[(0, 0, 0), (255, 0, 0)]\n"), done.text
