@@ -45,6 +45,7 @@ constexpr float kLeastReachMm = 0.5F;
 constexpr float kSweptShare = 0.5F;
 // Smallest size of a range that one worker takes.
 constexpr std::uint32_t kLeastIslands = 64;
+constexpr std::uint32_t kAhead = 3;  // islands are prefetched so many ahead
 constexpr std::uint32_t kLeastBodies = 1024;
 // A membrane that has been slower than this for kCalmAfterS is put to rest; a robot's full speed is a hundred times as
 // high.
@@ -144,11 +145,16 @@ private:
     void solve_islands(World& world, bool is_driven) {
         std::span<Island const> const islands = islands_.islands();
         auto const count = static_cast<std::uint32_t>(islands.size());
+        bool const is_large = fills_caches(world);
         std::atomic<bool> has_overlaps = false;
         workers_.run_ranges(count, kLeastIslands, [&](WorkRange range) {
-            for (Island const& island : islands.subspan(range.first, range.last - range.first)) {
-                if (island.is_active &&
-                    solvers_[range.worker].solve(world, assemblies_, contacts_, islands_, island, is_driven)) {
+            IslandSolver& solver = solvers_[range.worker];
+            for (std::uint32_t i = range.first; i < range.last; ++i) {
+                if (is_large && i + kAhead < range.last && islands[i + kAhead].is_active) {
+                    solver.expect(world, contacts_, islands_, islands[i + kAhead]);
+                }
+                if (islands[i].is_active &&
+                    solver.solve(world, assemblies_, contacts_, islands_, islands[i], is_driven)) {
                     has_overlaps = true;
                 }
             }

@@ -42,6 +42,9 @@ constexpr double kMuchEnergy = 1.01;
 // Smaller islands need no initial guess of their impulses: they converge in one or two iterations.
 constexpr std::uint32_t kLargeIsland = 32;
 
+// Contacts of an island whose bodies are prefetched: more would not stay in the cache.
+constexpr std::uint32_t kMostExpected = 64;
+
 constexpr float kUnlimited = std::numeric_limits<float>::max();
 constexpr std::uint32_t kMostBlocks = 64;
 
@@ -129,6 +132,28 @@ void IslandSolver::gather(World const& world, Assemblies& assemblies, NearContac
         contacts_.push_back({.a = a, .b = b, .near = index, .law = near.law, .seam_mm = seam_mm});
     }
     movers_[kStill].blocks = 0;
+}
+
+void IslandSolver::expect(World const& world, NearContacts const& contacts, Islands const& islands,
+                          Island const& island) const {
+    auto const expect_body = [&](std::uint32_t body) {
+        Bodies const& bodies = world.bodies;
+        __builtin_prefetch(&mover_[body], 1);
+        __builtin_prefetch(&bodies.position_mm[body], 1);
+        __builtin_prefetch(&bodies.velocity_mm_s[body], 1);
+        __builtin_prefetch(&bodies.heading_rad[body], 1);
+        __builtin_prefetch(&bodies.angular_velocity_rad_s[body], 1);
+        __builtin_prefetch(&contacts.disk(body));
+    };
+    std::uint32_t link = island.first;
+    for (std::uint32_t i = 0; i < kMostExpected && link != kNone; ++i) {
+        IslandContact const& contact = islands.contacts()[link];
+        expect_body(contacts.near()[contact.contact].a);
+        if (contacts.is_pair(contact.contact)) {
+            expect_body(contacts.near()[contact.contact].b);
+        }
+        link = contact.next;
+    }
 }
 
 /// Where numbers have become too large for a float, the body stays where it was, at rest.

@@ -36,6 +36,9 @@ public:
     bool solve(World& world, Assemblies& assemblies, NearContacts& contacts, Islands const& islands,
                Island const& island, bool is_driven);
 
+    /// Prefetches the bodies of an island that will be solved soon.
+    void expect(World const& world, NearContacts const& contacts, Islands const& islands, Island const& island) const;
+
 private:
     struct Contact {
         std::uint32_t a;     // into movers_

@@ -6,12 +6,19 @@
 
 #include "base/four.hpp"
 #include "physics/disjoint_sets.hpp"
+#include "physics/mover.hpp"
 
 namespace pogosim {
 
 namespace {
 
 constexpr std::uint32_t kLeastRange = 2048;  // contacts
+constexpr std::uint32_t kAhead = 32;         // bodies of a contact are prefetched so many contacts ahead
+
+void prefetch_motion(World const& world, std::uint32_t body) {
+    __builtin_prefetch(&world.bodies.position_mm[body]);
+    __builtin_prefetch(&world.bodies.velocity_mm_s[body]);
+}
 
 /// Disks of membranes may turn without moving anything; a turn of what a link or hinge holds moves the others. So does
 /// a link that pulls.
@@ -34,7 +41,12 @@ void Islands::find_pairs(World const& world, NearContacts const& contacts, Reach
     auto const dt_s = static_cast<float>(world.time_step_s);
     found.resize(pairs.last - pairs.first);
     std::size_t count = 0;
+    bool const is_large = fills_caches(world);
     for (std::uint32_t first = pairs.first; first < pairs.last; first += kLanes) {
+        for (std::uint32_t i = first + kAhead; is_large && i < std::min(first + kAhead + kLanes, pairs.last); ++i) {
+            prefetch_motion(world, contacts.near()[i].a);
+            prefetch_motion(world, contacts.near()[i].b);
+        }
         std::array<Four, kLanes> motion;
         Four radius_mm = {};
         for (std::uint32_t i = 0; i < kLanes; ++i) {
@@ -176,6 +188,9 @@ void Islands::find(World const& world, Assemblies const& assemblies, NearContact
     flatten(parent_);
     link(contacts);
     link_assemblies(world, assemblies, reach);
+    is_active_.reserve(islands_.capacity());  // so that it grows as rarely
+    is_active_.resize(islands_.size());
+    std::ranges::transform(islands_, is_active_.begin(), [](Island const& island) { return island.is_active ? 1 : 0; });
 }
 
 }  // namespace pogosim

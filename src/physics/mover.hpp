@@ -10,6 +10,13 @@ namespace pogosim {
 /// The mover that represents everything that is fixed. It stands in the origin, unturned.
 inline constexpr std::uint32_t kStill = 0;
 
+/// Neighbours in the arena are not neighbours in memory. Where bodies fill the caches, those that come next are
+/// prefetched.
+inline bool fills_caches(World const& world) {
+    constexpr std::size_t kManyBodies = 10'000;
+    return world.bodies.size() > kManyBodies;
+}
+
 struct Mover {
     Vec2 position_mm;
     Vec2 velocity_mm_s;
