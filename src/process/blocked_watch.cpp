@@ -24,6 +24,7 @@
 #include "base/background_thread.hpp"
 #include "process/backtrace.hpp"
 #include "process/crash_message.hpp"
+#include "process/signals_of_runs.hpp"
 
 namespace pogosim {
 
@@ -32,6 +33,7 @@ namespace {
 constexpr std::chrono::milliseconds kLookPeriod{250};
 constexpr int kBlockedLooks = 8;  // 2 s, counted in looks so that time in which this process is stopped does not count
 constexpr int kForgottenLooks = 2;  // per look that finds it awake, as a busy machine does now and then: see look()
+constexpr int kLongLooks = 2;       // a call that lasts until the second one is watched over, see start_watch()
 constexpr int kIdleLooks = 40;      // 10 s without a run, after which the thread of the watch ends
 
 /// The system call in which a thread waits.
@@ -87,7 +89,8 @@ bool writes(SystemCall const& call) {
 
 class BlockedWatch {
 public:
-    void begin(CrashHandlerState& handler) {
+    /// Returns whether there is a thread that looks.
+    bool begin(CrashHandlerState& handler) {
         std::lock_guard const lock(mutex_);
         watched_.push_back({.handler = &handler});
         if (!has_thread_) {
@@ -98,6 +101,7 @@ public:
                 has_thread_ = false;
             }
         }
+        return has_thread_;
     }
 
     void end(CrashHandlerState& handler) {
@@ -105,9 +109,15 @@ public:
         std::erase_if(watched_, [&](Watched const& watched) { return watched.handler == &handler; });
     }
 
+    bool has_thread() {
+        std::lock_guard const lock(mutex_);
+        return has_thread_;
+    }
+
 private:
     struct Watched {
         CrashHandlerState* handler = nullptr;
+        int looks = 0;
         unsigned long calls = 0;  // of user code, when it was first found asleep
         int blocked_looks = 0;    // that found it asleep, in one call or in many short ones; fewer when it was awake
     };
@@ -117,6 +127,7 @@ private:
         for (int looks_in_vain = 0; looks_in_vain <= kIdleLooks;) {
             lock.unlock();
             std::this_thread::sleep_for(kLookPeriod);
+            let_go_of_signals();
             lock.lock();
             looks_in_vain = watched_.empty() ? looks_in_vain + 1 : 0;
             for (Watched& watched : watched_) {
@@ -129,6 +140,9 @@ private:
     /// Code that blocks more than two thirds of its time is told in the end, whatever else the machine does.
     static void look(Watched& watched) {
         CrashHandlerState const& handler = *watched.handler;
+        if (++watched.looks == kLongLooks) {
+            arm_watch(*watched.handler);
+        }
         unsigned long const calls = handler.calls.load(std::memory_order_acquire);
         CrashHandlerState& run = handler.helped != nullptr ? *handler.helped : *watched.handler;
         if (run.is_told_of_blocked) {
@@ -188,7 +202,7 @@ void forget_blocked_in_child() {
     this_thread_id = 0;
 }
 
-void watch_over_blocked(CrashHandlerState& handler) {
+bool watch_over_blocked(CrashHandlerState& handler) {
     static std::mutex making;
     if (this_thread_id == 0) {
         this_thread_id = static_cast<pid_t>(syscall(SYS_gettid));
@@ -204,7 +218,12 @@ void watch_over_blocked(CrashHandlerState& handler) {
             watch_of_process = watch;
         }
     }
-    watch->begin(handler);
+    return watch->begin(handler);
+}
+
+bool watches_over_blocked() {
+    BlockedWatch* const watch = watch_of_process;
+    return watch != nullptr && watch->has_thread();
 }
 
 void end_watch_over_blocked(CrashHandlerState& handler) {
@@ -220,8 +239,13 @@ void end_watch_over_blocked(CrashHandlerState& handler) {
 
 namespace pogosim {
 
-void watch_over_blocked(CrashHandlerState& /*handler*/) {}
+bool watch_over_blocked(CrashHandlerState& /*handler*/) {
+    return false;
+}
 void end_watch_over_blocked(CrashHandlerState& /*handler*/) {}
+bool watches_over_blocked() {
+    return false;
+}
 void forget_blocked_in_child() {}
 
 }  // namespace pogosim

@@ -21,8 +21,21 @@ Caught& caught(int signal) {
 
 bool is_still_ours(int signal) {
     struct sigaction now = {};
-    return caught(signal).handler != nullptr && sigaction(signal, nullptr, &now) == 0 &&
-           now.sa_sigaction == caught(signal).handler;
+    return is_caught(signal) && sigaction(signal, nullptr, &now) == 0 && now.sa_sigaction == caught(signal).handler;
+}
+
+/// A signal that this thread is passing on.
+struct PassedOn {
+    int signal = 0;
+    void const* frame = nullptr;  // of the function that does
+};
+constinit thread_local PassedOn passed_on;
+
+/// Whether a handler to which a crash was passed on has sent it here again: it has taken ours for the one before it.
+bool comes_back(int signal, void const* frame) {
+    constexpr std::ptrdiff_t most_bytes = 65536;
+    std::ptrdiff_t const deeper = static_cast<char const*>(passed_on.frame) - static_cast<char const*>(frame);
+    return signal == passed_on.signal && deeper > 0 && deeper < most_bytes;  // else it was left by a jump
 }
 
 }  // namespace
@@ -33,12 +46,18 @@ void catch_signal(int signal, int flags, SignalHandler handler) {
     action.sa_flags = flags | SA_NODEFER | SA_SIGINFO;
     action.sa_sigaction = handler;
     struct sigaction before = {};
-    bool const again = is_still_ours(signal);
-    caught(signal).handler = handler;
     sigaction(signal, &action, &before);
+    // After it was given back, the host may have restored it.
+    bool const again =
+        before.sa_sigaction == handler || (is_caught(signal) && before.sa_sigaction == caught(signal).handler);
+    caught(signal).handler = handler;
     if (!again) {
         caught(signal).before = before;
     }
+}
+
+bool is_caught(int signal) {
+    return caught(signal).handler != nullptr;
 }
 
 void give_back_signal(int signal) {
@@ -58,22 +77,29 @@ void pass_on(int signal, siginfo_t* info, void* context) {
     if (before.sa_handler == SIG_IGN) {
         return;
     }
-    if (before.sa_handler == SIG_DFL) {
+    void const* const frame = __builtin_frame_address(0);
+    if (before.sa_handler == SIG_DFL || comes_back(signal, frame)) {
         std::signal(signal, SIG_DFL);
         if (info->si_code <= 0) {  // sent: it does not come again by itself, as a crash does
             std::raise(signal);
         }
-    } else if ((before.sa_flags & SA_SIGINFO) != 0) {
+        return;
+    }
+    PassedOn const outer = passed_on;
+    passed_on = {.signal = signal, .frame = frame};
+    if ((before.sa_flags & SA_SIGINFO) != 0) {
         before.sa_sigaction(signal, info, context);
     } else {
         before.sa_handler(signal);
     }
+    passed_on = outer;
 }
 
 void release_caught_signals() {
     for (std::size_t i = 0; i < signals.size(); ++i) {
         if (is_still_ours(static_cast<int>(i))) {
             std::signal(static_cast<int>(i), SIG_DFL);
+            signals.at(i).handler = nullptr;
         }
     }
 }

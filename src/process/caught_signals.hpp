@@ -11,6 +11,9 @@ using SignalHandler = void (*)(int signal, siginfo_t* info, void* context);
 /// `flags`: those of sigaction(). The handler before is kept, see pass_on().
 void catch_signal(int signal, int flags, SignalHandler handler);
 
+/// Whether that is so, as far as this process has been asked to.
+bool is_caught(int signal);
+
 /// Gives this signal back to the handler before, unless the program has taken it over since.
 void give_back_signal(int signal);
 

@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 #include <ctime>
-#include <mutex>
 
 #include "base/background_thread.hpp"
 #include "process/backtrace.hpp"
@@ -16,11 +15,11 @@
 #include "process/fibers.hpp"
 #include "process/other_threads.hpp"
 #include "process/process.hpp"
+#include "process/signals_of_runs.hpp"
 
 namespace pogosim {
 
 constinit thread_local CrashHandlerState* active_handler = nullptr;
-constinit thread_local ThreadTimers* timers_of_thread = nullptr;
 constinit std::atomic<CrashHandlerState*> process_run = nullptr;
 
 namespace {
@@ -30,18 +29,6 @@ constexpr double kSameRequestS = 0.1;  // timeout(1) and batch systems signal a 
 constexpr auto kOwnMemoryAdvice =
     ", most likely because the user program wrote to memory it does not own; build the program with "
     "-fsanitize=address to find out where";
-
-/// Signals that must stay unblocked during a run: those of crashes, and of the watchdog.
-class CaughtSignals {
-public:
-    void need();
-    void need_no_more();
-
-private:
-    std::mutex mutex_;
-    int needs_ = 0;
-};
-CaughtSignals caught_signals;
 
 /// Stops the calling thread for ever, without ending the program.
 [[noreturn]] void stop_this_thread() {
@@ -98,26 +85,6 @@ void on_crash(int signal, siginfo_t* info, void* signal_context) {
     give_up_rescue(*handler);
 }
 
-void CaughtSignals::need() {
-    std::lock_guard const lock(mutex_);
-    if (needs_++ == 0) {
-        for (int const signal : kCrashSignals) {
-            catch_signal(signal, SA_ONSTACK, on_crash);
-        }
-        catch_watch_signals();
-    }
-}
-
-void CaughtSignals::need_no_more() {
-    std::lock_guard const lock(mutex_);
-    if (--needs_ == 0) {
-        give_back_watch_signals();
-        for (int const signal : kCrashSignals) {
-            give_back_signal(signal);
-        }
-    }
-}
-
 /// Limits how long the thread of the run waits for its workers, some of which may now wait for ever for a lock.
 void let_run_expect_rescue(CrashHandlerState const& helper) {
     CrashHandlerState& run = *helper.helped;
@@ -157,8 +124,26 @@ UserFailure exception_failure(CrashHandlerState& handler, std::string const& wha
 
 }  // namespace
 
+void catch_signals_of_runs() {
+    for (int const signal : kCrashSignals) {
+        catch_signal(signal, SA_ONSTACK, on_crash);
+    }
+    catch_watch_signals();
+}
+
+bool signals_of_runs_are_caught() {
+    return is_caught(kCrashSignals.front());
+}
+
+void give_back_signals_of_runs() {
+    give_back_watch_signals();
+    for (int const signal : kCrashSignals) {
+        give_back_signal(signal);
+    }
+}
+
 void catch_crashes_of_process() {
-    caught_signals.need();
+    need_signals();
 }
 
 CrashHandlerState::CrashHandlerState(RunningCode const& running_code, void const* in_program, double timeout_s)
@@ -185,15 +170,14 @@ bool CrashHandler::was_interrupted() const {
 
 CrashHandlerScope::CrashHandlerScope(CrashHandler& handler) : handler_(*handler.state_), before_(active_handler) {
     if (handler_.depth++ == 0) {
-        if (timers_of_thread == nullptr) {
-            caught_signals.need();
-            stack_.emplace();
-        }
+        thread_.emplace();
         watch_for_forks();
         handler_.thread = pthread_self();
         handler_.inside = false;
-        start_watch(handler_);
-        watch_over_blocked(handler_);
+        start_watch(handler_, watches_over_blocked());
+        if (!watch_over_blocked(handler_)) {
+            arm_watch(handler_);
+        }
     }
     active_handler = &handler_;
 }
@@ -202,23 +186,9 @@ CrashHandlerScope::~CrashHandlerScope() {
     if (--handler_.depth == 0) {
         end_watch_over_blocked(handler_);
         stop_watch(handler_);
-        if (timers_of_thread == nullptr) {
-            caught_signals.need_no_more();
-        }
+        thread_.reset();
     }
     active_handler = before_;
-}
-
-ThreadOfRuns::ThreadOfRuns() : timers_(std::make_unique<ThreadTimers>()) {
-    caught_signals.need();
-    timers_of_thread = timers_.get();
-}
-
-ThreadOfRuns::~ThreadOfRuns() {
-    timers_->processor.remove();
-    timers_->wall.remove();
-    timers_of_thread = nullptr;
-    caught_signals.need_no_more();
 }
 
 WorkerCrashHandler::WorkerCrashHandler(CrashHandler& run)
@@ -239,7 +209,7 @@ WorkerCrashHandler::~WorkerCrashHandler() {
     end_watch_over_blocked(self);
     stop_watch(self);
     if (is_entered_) {
-        caught_signals.need_no_more();
+        need_signals_no_more();
     }
 }
 
@@ -248,11 +218,11 @@ void WorkerCrashHandler::enter() {
         return;
     }
     is_entered_ = true;
-    static thread_local SignalStackScope const stack;  // as long as the thread
+    use_large_signal_stack();
     CrashHandlerState& self = *handler_.state_;
     self.thread = pthread_self();
     active_handler = &self;
-    caught_signals.need();
+    need_signals();
     start_watch(self);
     watch_over_blocked(self);
     sigset_t watch;

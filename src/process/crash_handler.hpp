@@ -22,9 +22,9 @@
 
 #include "base/floating_point.hpp"
 #include "base/memory.hpp"
-#include "process/other_threads.hpp"
 #include "process/program_memory.hpp"
 #include "process/running_code.hpp"
+#include "process/signals_of_runs.hpp"
 
 namespace pogosim {
 
@@ -99,8 +99,7 @@ private:
 };
 
 /// While this exists, the calling thread works for a run: its crashes, and the functions below, belong to that run.
-/// Installs signal handlers, and restores the previous ones at the end. May be nested in a thread; a run has one thread
-/// at a time.
+/// Installs signal handlers, see signals_of_runs.hpp. May be nested in a thread; a run has one thread at a time.
 class CrashHandlerScope {
 public:
     explicit CrashHandlerScope(CrashHandler& handler);
@@ -111,24 +110,8 @@ public:
 private:
     CrashHandlerState& handler_;
     CrashHandlerState* before_;
-    std::optional<SignalStackScope> stack_{};
+    std::optional<ThreadOfRuns> thread_{};
     StandardFloatingPoint mode_{};
-};
-
-struct ThreadTimers;
-
-/// While this exists, the calling thread works for many runs in turn: handlers of signals, their stack and timers stay
-/// from one CrashHandlerScope to the next, which costs less than to make them each time.
-class ThreadOfRuns {
-public:
-    ThreadOfRuns();
-    ~ThreadOfRuns();
-    ThreadOfRuns(ThreadOfRuns const&) = delete;
-    ThreadOfRuns& operator=(ThreadOfRuns const&) = delete;
-
-private:
-    SignalStackScope stack_{};
-    std::unique_ptr<ThreadTimers> timers_;
 };
 
 /// While this exists, signals that ask this process to end belong to that run, and so do crashes in threads that the

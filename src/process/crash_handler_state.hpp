@@ -169,12 +169,25 @@ void hurry_user_code(CrashHandlerState& handler, char const* request_name);
 /// A second signal aborts user code. Returns at once; does nothing outside user code. For signal handlers.
 void abandon_user_code(CrashHandlerState& handler);
 
-/// Handlers of the signals of the watch, until they are given back.
+/// Handlers of all signals that concern runs, until they are given back. To be caught again when the host has handlers
+/// of its own in the meantime.
+void catch_signals_of_runs();
+bool signals_of_runs_are_caught();
+void give_back_signals_of_runs();
+
+/// Those of the watch.
 void catch_watch_signals();
 void give_back_watch_signals();
 
-/// Watches over the thread that calls this.
-void start_watch(CrashHandlerState& handler);
+/// Catches them once more, since the host may have taken them.
+void find_watch_signals_again();
+
+/// Watches over the thread that calls this. `is_looked_at`: by the thread that watches over blocked calls, which lets
+/// the watch over processor time begin when a call lasts, see arm_watch(): most are over before.
+void start_watch(CrashHandlerState& handler, bool is_looked_at = false);
+
+/// The watch over processor time begins, for a thread that may be another one, while it cannot stop.
+void arm_watch(CrashHandlerState& handler);
 
 /// From now on, the watchdog only checks that the data file makes progress. `grace_s`: time allowed until that starts.
 void watch_rescue(CrashHandlerState& handler, double grace_s = 0.0);
@@ -185,9 +198,13 @@ void stop_watch(CrashHandlerState& handler);
 // the watch over processor time does not see it. A thread of the simulator looks at the threads that run user code,
 // four times a second, without disturbing them: a signal would end some calls before their time.
 
-/// The calling thread runs user code for this handler from now on, until end_watch_over_blocked().
-void watch_over_blocked(CrashHandlerState& handler);
+/// The calling thread runs user code for this handler from now on, until end_watch_over_blocked(). Returns whether
+/// there is a thread that looks.
+bool watch_over_blocked(CrashHandlerState& handler);
 void end_watch_over_blocked(CrashHandlerState& handler);
+
+/// Whether that thread is there, and so calls let_go_of_signals().
+bool watches_over_blocked();
 
 /// In a child of fork(), in the thread that is left.
 void forget_blocked_in_child();

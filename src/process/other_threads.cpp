@@ -64,23 +64,17 @@ SignalStack const& signal_stack() {
 
 }  // namespace
 
-SignalStackScope::SignalStackScope() {
+void use_large_signal_stack() {
     static thread_local bool is_noted = false;
     if (!is_noted) {
         is_noted = true;
         note_stack();
     }
-    bool const is_large = sigaltstack(nullptr, &before_) == 0 && (before_.ss_flags & SS_DISABLE) == 0 &&
-                          before_.ss_size >= kSignalStackBytes;
+    stack_t now = {};
+    bool const is_large =
+        sigaltstack(nullptr, &now) == 0 && (now.ss_flags & SS_DISABLE) == 0 && now.ss_size >= kSignalStackBytes;
     if (!is_large && signal_stack().exists()) {
         signal_stack().use();
-        is_switched_ = true;
-    }
-}
-
-SignalStackScope::~SignalStackScope() {
-    if (is_switched_) {
-        sigaltstack(&before_, nullptr);
     }
 }
 

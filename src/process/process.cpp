@@ -13,6 +13,7 @@
 #include "process/crash_handler_state.hpp"
 #include "process/crash_message.hpp"
 #include "process/other_threads.hpp"
+#include "process/signals_of_runs.hpp"
 
 namespace pogosim {
 
@@ -54,12 +55,14 @@ bool forks_executable = false;
 
 /// Otherwise the child would inherit the parent's unwritten output and also write it.
 void before_fork() {
+    hold_signals_before_fork();
     if (process_is_ours() || active_handler != nullptr) {
         std::fflush(nullptr);
     }
 }
 
 void in_child() {
+    forget_signals_in_child();
     forget_blocked_in_child();
     if (forks_executable) {
         return;
@@ -77,7 +80,7 @@ void in_child() {
 }  // namespace
 
 void watch_for_forks() {
-    static int const registered = pthread_atfork(before_fork, nullptr, in_child);
+    static int const registered = pthread_atfork(before_fork, release_signals_in_parent, in_child);
     static_cast<void>(registered);
 }
 

@@ -39,9 +39,16 @@ void ThreadTimer::arm(double period_s) {
     times.it_interval.tv_sec = static_cast<time_t>(period_s);
     times.it_interval.tv_nsec = static_cast<long>((period_s - std::floor(period_s)) * ns_per_s);
     times.it_value = times.it_interval;
-    timer_settime(timer_, 0, &times, nullptr);
     is_armed_ = true;
-    period_s_ = period_s;
+    timer_settime(timer_, 0, &times, nullptr);
+}
+
+void ThreadTimer::disarm() {
+    if (is_armed_) {
+        itimerspec const none = {};
+        timer_settime(timer_, 0, &none, nullptr);
+        is_armed_ = false;
+    }
 }
 
 void ThreadTimer::remove() {
@@ -63,7 +70,10 @@ void ThreadTimer::arm(double period_s) {
     times.it_value = times.it_interval;
     setitimer(clock_ == TimerClock::processor ? ITIMER_PROF : ITIMER_REAL, &times, nullptr);
     exists_ = is_armed_ = true;
-    period_s_ = period_s;
+}
+
+void ThreadTimer::disarm() {
+    remove();
 }
 
 void ThreadTimer::remove() {

@@ -11,7 +11,8 @@ enum class TimerClock {
     wall,
 };
 
-/// Belongs to the thread that calls arm() first. Children of fork() and programs started with exec() do not inherit it.
+/// Belongs to the thread that calls arm() or prepare() first. Children of fork() and programs started with exec() do
+/// not inherit it.
 /// On systems without such timers, each process has one of each kind.
 class ThreadTimer {
 public:
@@ -27,11 +28,16 @@ public:
     /// Does the part of arm() that is not allowed in a signal handler, without starting the timer.
     void prepare();
 
+    /// Stops it until it is armed again.
+    void disarm();
+
     /// No signal comes after this.
     void remove();
 
+    /// In a child of fork(), which has not inherited it.
+    void forget() { exists_ = is_armed_ = false; }
+
     bool is_armed() const { return is_armed_; }
-    double period_s() const { return period_s_; }  // while it is armed
 
 private:
     TimerClock clock_;
@@ -39,11 +45,17 @@ private:
     void* owner_;
     bool exists_ = false;
     bool is_armed_ = false;
-    double period_s_ = 0.0;
 #ifdef __linux__
     timer_t timer_{};
 #endif
 };
+
+/// Whether timers of one thread may stay while another one has its own.
+#ifdef __linux__
+inline constexpr bool kTimersStay = true;
+#else
+inline constexpr bool kTimersStay = false;
+#endif
 
 /// Those of the watch over user code. Their signals have the address of this in siginfo_t::si_value.
 struct ThreadTimers {

@@ -18,6 +18,7 @@ namespace pogosim {
 namespace {
 
 constexpr double kWatchPeriodS = 0.25;   // of processor time
+constexpr double kShortTimeoutS = 1.0;   // the watch begins at once
 constexpr double kRetryPeriodS = 0.001;  // in which user code is looked for outside of libraries
 /// A loop of malloc() and free() is outside of libraries only now and then.
 constexpr double kLongestRetryS = 1.0;
@@ -258,7 +259,18 @@ void give_back_watch_signals() {
     give_back_signal(SIGPROF);
 }
 
-void start_watch(CrashHandlerState& handler) {
+void arm_watch(CrashHandlerState& handler) {
+    ThreadTimer& timer = handler.timers->processor;
+    if (handler.busy.timeout_s <= 0.0 || timer.is_armed()) {
+        return;
+    }
+    if (handler.timers != &handler.own_timers) {
+        find_watch_signals_again();
+    }
+    timer.arm(handler.busy.period_s);
+}
+
+void start_watch(CrashHandlerState& handler, bool is_looked_at) {
     handler.timers = timers_of_thread != nullptr ? timers_of_thread : &handler.own_timers;
     handler.is_watching = true;
     handler.timers->wall.prepare();
@@ -269,9 +281,10 @@ void start_watch(CrashHandlerState& handler) {
         handler.busy.calls_seen = 0;
         handler.busy.retrying = false;
         handler.busy.period_s = std::max(kRetryPeriodS, std::min(kWatchPeriodS, timeout_s / 4.0));
-        ThreadTimer& timer = handler.timers->processor;
-        if (!timer.is_armed() || timer.period_s() != handler.busy.period_s) {
-            timer.arm(handler.busy.period_s);
+        if (handler.timers == &handler.own_timers || !is_looked_at || timeout_s < kShortTimeoutS) {
+            arm_watch(handler);
+        } else {
+            handler.timers->processor.prepare();
         }
     }
 }
@@ -285,7 +298,9 @@ void watch_rescue(CrashHandlerState& handler, double grace_s) {
 void stop_watch(CrashHandlerState& handler) {
     handler.is_watching = false;
     bool const stays = handler.timers == timers_of_thread;
-    if (!stays) {
+    if (stays) {
+        handler.timers->processor.disarm();
+    } else {
         handler.timers->processor.remove();
     }
     if (!stays || handler.timers->wall.is_armed()) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -182,6 +183,7 @@ TEST(ManyRuns, LeaveSignalsToTheProcess) {
     pogosim_threads* threads = nullptr;
     ASSERT_EQ(pogosim_threads_open(2, &threads), POGOSIM_OK);
     stepped(runs, threads, 20);
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // they stay for a further step
     for (int const signal : {SIGSEGV, SIGPROF, SIGALRM}) {
         struct sigaction now = {};
         sigaction(signal, nullptr, &now);

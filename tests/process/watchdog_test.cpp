@@ -3,7 +3,9 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -23,7 +25,11 @@ Handler handler_of(int signal) {
     return now.sa_handler;
 }
 
-void other_handler(int /*signal*/) {}
+std::atomic<std::size_t> calls_of_other_handler = 0;
+
+void other_handler(int /*signal*/) {
+    ++calls_of_other_handler;
+}
 
 class NoCode : public RunningCode {
 public:
@@ -40,11 +46,25 @@ public:
 };
 NoCode const kNoCode;
 
+/// Within so long, or not at all.
+bool comes_true(std::function<bool()> const& what) {
+    constexpr std::chrono::seconds longest{30};
+    auto const begin = std::chrono::steady_clock::now();
+    while (!what()) {
+        if (std::chrono::steady_clock::now() - begin > longest) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
+}
+
 TEST(Watchdog, GivesBackTheSignalsOfTheProcess) {
     constexpr std::array kSignals{SIGSEGV, SIGFPE, SIGABRT, SIGPROF, SIGALRM};
     for (int const signal : kSignals) {
         std::signal(signal, other_handler);
     }
+    calls_of_other_handler = 0;
     CrashHandler handler(kNoCode, nullptr, 3.0);
     {
         CrashHandlerScope const thread(handler);
@@ -54,9 +74,64 @@ TEST(Watchdog, GivesBackTheSignalsOfTheProcess) {
         }
     }
     for (int const signal : kSignals) {
-        EXPECT_EQ(handler_of(signal), other_handler);
+        std::raise(signal);  // it is passed on until then
+    }
+    EXPECT_EQ(calls_of_other_handler, kSignals.size());
+    for (int const signal : kSignals) {
+        EXPECT_TRUE(comes_true([&] { return handler_of(signal) == other_handler; }));
         std::signal(signal, SIG_DFL);
     }
+}
+
+Handler handler_before = nullptr;
+
+/// As faulthandler of Python: leaves a crash to the handler that it found.
+void handler_that_passes_on(int signal) {
+    ++calls_of_other_handler;
+    std::signal(signal, handler_before);
+    std::raise(signal);
+}
+
+TEST(Watchdog, CrashOfTheProcessEndsItThoughItsHandlerLeavesThatToOurs) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    auto const die = [] {
+        CrashHandler handler(kNoCode, nullptr, 3.0);
+        { CrashHandlerScope const thread(handler); }
+        handler_before = std::signal(SIGSEGV, handler_that_passes_on);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        { CrashHandlerScope const thread(handler); }  // finds that handler
+        std::raise(SIGSEGV);
+    };
+    EXPECT_EXIT(die(), ::testing::KilledBySignal(SIGSEGV), "");
+}
+
+TEST(Watchdog, HandlersOfTheProcessFromBetweenTwoRunsAreKept) {
+    CrashHandler handler(kNoCode, nullptr, 3.0);
+    { CrashHandlerScope const thread(handler); }
+    std::signal(SIGFPE, other_handler);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    {
+        CrashHandlerScope const thread(handler);
+        auto const failure = call_user_code([] { std::raise(SIGFPE); });
+        ASSERT_TRUE(failure);
+        EXPECT_NE(failure->what.find("arithmetic error"), std::string::npos) << failure->what;
+    }
+    EXPECT_TRUE(comes_true([] { return handler_of(SIGFPE) == other_handler; }));
+    std::signal(SIGFPE, SIG_DFL);
+}
+
+TEST(Watchdog, EndsWhatDoesNotReturnWithinALongerTimeToo) {
+    CrashHandler handler(kNoCode, nullptr, 1.0);
+    { CrashHandlerScope const thread(handler); }  // now there is a thread that looks
+    CrashHandlerScope const thread(handler);
+    std::signal(SIGPROF, other_handler);  // too late for the scope to see
+    auto const failure = call_user_code([] {
+        for (std::atomic<bool> ever = true; ever;) {
+        }
+    });
+    ASSERT_TRUE(failure);
+    EXPECT_TRUE(failure->too_long);
+    std::signal(SIGPROF, SIG_DFL);
 }
 
 /// The signal would find no handler.

@@ -539,6 +539,28 @@ def test_ctrl_c_interrupts_python_and_leaves_the_run_usable(hosted: Path, scene:
     assert (done.returncode, done.stdout) == (0, "ok True\n"), done.stderr
 
 
+def test_handlers_installed_between_steps_hold_and_crashes_of_robots_stay_errors(hosted: Path, scene: Path) -> None:
+    code = (
+        "import faulthandler, os, signal, time, pogosim\n"
+        "settings = {'parameters.fail_at_tick': 60, 'parameters.failure': 'crash'}\n"
+        f"s = pogosim.Simulation({str(hosted)!r}, {str(scene)!r}, set=settings)\n"
+        "s.step()\n"
+        "faulthandler.enable()\n"
+        "signal.signal(signal.SIGALRM, lambda *_: print('alarm', flush=True))\n"
+        "time.sleep(0.01)\n"
+        "s.step()\n"
+        "signal.raise_signal(signal.SIGALRM)\n"
+        "try:\n    s.run()\nexcept pogosim.ProgramFailedError:\n    print('failed', flush=True)\n"
+        "child = os.fork()\n"
+        "if child == 0:\n    signal.raise_signal(signal.SIGFPE)\n"
+        "print(os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGFPE, flush=True)\n"
+        "signal.raise_signal(signal.SIGSEGV)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (-signal.SIGSEGV, "alarm\nfailed\nTrue\n"), done.stderr
+    assert done.stderr.count("Fatal Python error: Segmentation fault") == 1
+
+
 def test_many_runs_one_after_the_other_leave_nothing_behind(hosted: Path, scene: Path) -> None:
     def open_files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
