@@ -241,12 +241,17 @@ int pogosim_run_restore_state(pogosim_run* run, pogosim_state const* state);
 /// Gives the memory of a state back, also after pogosim_run_close().
 void pogosim_state_free(pogosim_state* state);
 
-/// What pogosim_threads_step() is to do with a run, and has done.
+/// What a run is to do, and has done.
 struct pogosim_turn {
     int64_t left;          ///< steps to make; those that were made are taken off
-    int32_t status;        ///< as of pogosim_run_step(); a run makes steps while it is POGOSIM_OK
+    int32_t status;        ///< as of pogosim_run_step(); pogosim_threads_step() steps a run while it is POGOSIM_OK
     int32_t has_messages;  ///< not 0: pogosim_run_messages() has some
 };
+
+/// Makes the steps that are left, as pogosim_run_step(), and says what a host needs to know afterwards. Returns its
+/// status: POGOSIM_OVER, too, if the run was over before; without steps to make, POGOSIM_OK unless it is over or has
+/// failed.
+int pogosim_run_take_turn(pogosim_run* run, struct pogosim_turn* turn, double budget_s);
 
 /// Makes `count` threads, 1 to 1024, which wait for work; fewer if the system cannot make so many.
 int pogosim_threads_open(int count, pogosim_threads** threads);

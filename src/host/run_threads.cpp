@@ -16,7 +16,7 @@
 #include "base/error.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
-#include "process/crash_handler.hpp"
+#include "process/signals_of_runs.hpp"
 
 using namespace pogosim;
 
@@ -39,24 +39,14 @@ double seconds_until(Clock::time_point when) {
 }
 
 void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {
-    bool has_failed = false;
-    {
-        std::lock_guard const lock(run.in_use);
-        has_failed = run.has_failed();
-        if (turn.status == POGOSIM_OK && run.is_over() && !has_failed) {
-            turn.status = POGOSIM_OVER;
-        }
+    if (turn.status != POGOSIM_OK) {
+        turn.has_messages = 0;
+        return;
     }
-    if (turn.status == POGOSIM_OK && (turn.left > 0 || has_failed)) {  // a failed run says so
-        std::int64_t done = 0;
-        turn.status = pogosim_run_step(&run, turn.left, budget_s, &done);
-        turn.left -= done;
-        if (turn.status != POGOSIM_OK && turn.status != POGOSIM_OVER) {
-            error = pogosim_host_error();
-        }
+    pogosim_run_take_turn(&run, &turn, budget_s);
+    if (turn.status != POGOSIM_OK && turn.status != POGOSIM_OVER) {
+        error = pogosim_host_error();
     }
-    std::lock_guard const lock(run.in_use);
-    turn.has_messages = run.has_messages() ? 1 : 0;
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ def test_run_is_over_though_ctrl_c_came_in_its_last_step(
     hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pogosim.Simulation(hosted, scene) as simulation:
-        interrupt_in("pogosim_run_step", 1, monkeypatch)
+        interrupt_in("pogosim_run_take_turn", 1, monkeypatch)
         with pytest.raises(KeyboardInterrupt):
             simulation.run()
         assert simulation.steps == simulation.step_count

@@ -55,10 +55,14 @@ class RunState:
     """The present state of a run. Any thread may read it at any time; reads are answered between two time steps.
 
     Each reset of a simulation creates a new one; code that keeps an old one sees the end of the old run.
+
+    Attributes:
+        known_pointer: `pointer` for code that has checked the process.
     """
 
     def __init__(self, run: OpenRun) -> None:
         self._run = run
+        self.known_pointer = run.pointer
         self._process = os.getpid()
         self._arrays: dict[str, npt.NDArray[Any]] = {}
         self._writable: dict[str, npt.NDArray[Any]] = {}

@@ -38,6 +38,7 @@ from pogosim.installation import InstallationError, find_installation
 from pogosim.lines import printable_lines
 from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 
+FAILED_BEFORE = b"the run has failed: reset it"  # as the library says it
 DELAY_S = 0.05  # in which the finaliser returns
 
 
@@ -142,6 +143,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_host_version": (c_char_p, ()),
     "pogosim_run_open": (c_int, (POINTER(RunOptions), POINTER(c_void_p))),
     "pogosim_run_step": (c_int, (c_void_p, c_int64, c_double, POINTER(c_int64))),
+    "pogosim_run_take_turn": (c_int, (c_void_p, POINTER(Turn), c_double)),
     "pogosim_run_end": (c_int, (c_void_p,)),
     "pogosim_run_close": (None, (c_void_p,)),
     "pogosim_run_number": (c_int, (c_void_p, c_char_p, POINTER(c_double))),
@@ -223,6 +225,11 @@ def error_of(status: int, message: bytes) -> SimulationError:
     """Return the error that a status of the library stands for."""
     kind = ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError
     return kind(printable_lines(message.decode("utf-8", "replace")))
+
+
+def error_of_step(status: int, message: bytes) -> SimulationError:
+    """Return the error that a status of a run's steps stands for."""
+    return SimulationError(message.decode()) if message == FAILED_BEFORE else error_of(status, message)
 
 
 class OpenRun:

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import SimulationError
-from pogosim.simulation.library import OK, OVER, Turn, check, error_of, library
-from pogosim.simulation.run import FAILED_BEFORE, SLICE_S
+from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, library
+from pogosim.simulation.run import SLICE_S
 
 IN_USE = "a simulation is in use by another thread: give each thread one of its own"
 
@@ -53,13 +53,8 @@ class RunThreads:
         found = {}
         for run in failed.tolist():
             if text := library().pogosim_threads_error(self._handle, run):
-                found[run] = failure(int(turns["status"][run]), text)
+                found[run] = error_of_step(int(turns["status"][run]), text)
         return found
-
-
-def failure(status: int, message: bytes) -> SimulationError:
-    """Return the error of a run."""
-    return SimulationError(FAILED_BEFORE) if message == FAILED_BEFORE.encode() else error_of(status, message)
 
 
 class ManyRuns:

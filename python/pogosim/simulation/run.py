@@ -7,7 +7,6 @@ import math
 import os
 import threading
 from collections.abc import Iterator, Mapping, MutableMapping
-from ctypes import byref, c_int64
 from multiprocessing.util import Finalize
 from pathlib import Path
 from types import TracebackType
@@ -26,7 +25,7 @@ from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process,
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
-from pogosim.simulation.library import OVER, check, library
+from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, library
 from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
@@ -41,7 +40,6 @@ if TYPE_CHECKING:
 
 MOST_SEED = 2**32 - 1
 MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
-FAILED_BEFORE = "the run has failed: reset it"  # as the library says it
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
 LEVELS = {"D": logging.DEBUG, "I": logging.INFO, "W": logging.WARNING, "E": logging.ERROR}
@@ -201,6 +199,7 @@ class Simulation:
         self._current = CurrentRun(checked_warned(warned))
         self._lock = self._current.lock
         self._is_closed = False
+        self._turn = Turn()
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
             is_temporary = data_file is None
@@ -237,22 +236,22 @@ class Simulation:
             ConfigurationError: The program refused its configuration, or the data file cannot be written.
             KeyboardInterrupt: Ctrl-C. The run can go on afterwards.
         """
-        steps = given.integer("steps", steps, least=0)
-        made = 0
+        if type(steps) is not int or not 0 <= steps <= MOST_STEPS:
+            steps = min(given.integer("steps", steps, least=0), MOST_STEPS)
         with self._busy():
-            run = self._run
-            steps = min(steps, MOST_STEPS)
-            is_over = bool(run.number("is_over"))
-            if is_over and run.number("has_failed"):
-                raise SimulationError(FAILED_BEFORE)
-            while made < steps and not is_over and not self._current.should_pause:
-                done = c_int64()
+            run, turn = self._run, self._turn  # `run` lives until the library's functions return
+            turn.left, status = steps, OK
+            while status == OK and not self._current.should_pause:
                 try:
-                    is_over = check(library().pogosim_run_step(run.pointer, steps - made, SLICE_S, byref(done))) == OVER
+                    status = library().pogosim_run_take_turn(run.known_pointer, turn, SLICE_S)
                 finally:
-                    made += done.value
-                    self._pass_messages_on()
-        return made
+                    if turn.has_messages:
+                        self._pass_messages_on()
+                if status not in (OK, OVER):
+                    raise error_of_step(status, library().pogosim_host_error())
+                if not turn.left:
+                    break
+            return steps - int(turn.left)
 
     def run(self, until_s: float = math.inf) -> int:
         """Go on until this simulated time, or the end of the run. Returns how many steps were made."""
