@@ -270,7 +270,8 @@ void pogosim_threads_close(pogosim_threads* threads);
 
 /// Copies an array of many runs, one after the other: that of pogosim_run_array(), or, if `category` is not NULL, of
 /// pogosim_run_brain_array(). Arrays of bodies ("bodies.position") have a row for each robot in place of one for each
-/// body, NaN for robots without one. `bytes_each`: size of the array of one run; it fails where that is another one.
+/// body, NaN for robots without one; "light_levels" are those of pogosim_run_light_levels(). `bytes_each`: size of the
+/// array of one run; it fails where that is another one.
 int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* category, char const* name, void* into,
                       size_t bytes_each);
 

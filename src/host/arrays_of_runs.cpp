@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "base/error.hpp"
 #include "host/array_places.hpp"
@@ -21,6 +22,7 @@ using namespace pogosim;
 namespace {
 
 constexpr std::string_view kOfBodies = "bodies.";
+constexpr std::string_view kLightLevels = "light_levels";  // which are in no memory
 constexpr std::array kWritten{"motors", "leds", "send_bytes", "send_length", "send_face"};
 
 std::size_t bytes_of_value(pogosim_array const& array) {
@@ -72,6 +74,13 @@ void read_bodies(std::size_t run, World const& world, pogosim_array const& array
     }
 }
 
+void read_light(std::size_t run, World const& world, std::byte* into, std::size_t bytes) {
+    std::vector<double> levels(world.robots.size());
+    check_size(run, static_cast<std::int64_t>(levels.size()), numbers(levels), bytes);
+    read_light_levels(world, levels.data());
+    std::memcpy(into, levels.data(), bytes);
+}
+
 void read_rows(std::size_t run, pogosim_array const& array, std::byte* into, std::size_t bytes) {
     check_size(run, array.shape[0], array, bytes);
     for (std::int64_t row = 0; row < array.shape[0]; ++row) {
@@ -108,6 +117,10 @@ int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* catego
         bool const of_bodies = category == nullptr && std::string_view(name).starts_with(kOfBodies);
         for (std::size_t i = 0; i < count; ++i, place += bytes_each) {
             std::lock_guard const lock(runs[i]->in_use);
+            if (category == nullptr && name == kLightLevels) {
+                read_light(i, runs[i]->simulation().world(), place, bytes_each);
+                continue;
+            }
             pogosim_array const array = array_in(*runs[i], category, name);
             if (of_bodies) {
                 read_bodies(i, runs[i]->simulation().world(), array, place, bytes_each);

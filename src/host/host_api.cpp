@@ -49,6 +49,13 @@ constexpr std::array kNumbers{
 
 }  // namespace
 
+void pogosim::read_light_levels(World const& world, double* levels) {
+    for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
+        std::uint32_t const body = world.robots.body[robot];
+        levels[robot] = body == kNone ? -1.0 : mean_light(world, static_cast<std::uint32_t>(robot));
+    }
+}
+
 char const* pogosim_host_error() {
     return error_text().c_str();
 }
@@ -172,11 +179,7 @@ int pogosim_run_set_parameter(pogosim_run* run, char const* name, char const* va
 void pogosim_run_light_levels(pogosim_run const* run, double* levels) {
     StandardFloatingPoint const mode;
     std::lock_guard const lock(run->in_use);
-    World const& world = run->simulation().world();
-    for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
-        std::uint32_t const body = world.robots.body[robot];
-        levels[robot] = body == kNone ? -1.0 : mean_light(world, static_cast<std::uint32_t>(robot));
-    }
+    read_light_levels(run->simulation().world(), levels);
 }
 
 uint64_t pogosim_run_hash(pogosim_run const* run) {

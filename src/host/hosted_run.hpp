@@ -91,6 +91,9 @@ std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_
 /// An array of a category that this process drives. Throws ConfigError if there is none.
 pogosim_array brain_array_of(pogosim_run& run, std::string_view category, std::string_view name);
 
+/// What pogosim_run_light_levels() gives. `levels` has a place for each robot.
+void read_light_levels(World const& world, double* levels);
+
 /// The array of a column of the data file.
 std::optional<pogosim_array> column_array_of(SavedColumns const& saved, std::string_view name);
 

@@ -62,13 +62,86 @@ def test_arrays_of_many_runs_are_those_of_each(tmp_path: Path) -> None:
         runs.brain("robots").motors[:] = 500
         runs.brain("robots").leds[:] = 7
         runs.step(30)
-        for name in ("positions", "headings", "velocities", "leds"):
+        for name in (
+            "positions",
+            "headings",
+            "velocities",
+            "angular_velocities",
+            "leds",
+            "light_levels",
+            "messages_sent",
+            "messages_received",
+        ):
             found, expected = getattr(runs, name), np.stack([getattr(sim, name) for sim in runs])
             assert found.dtype == expected.dtype
             assert np.array_equal(found, expected)
             assert not np.shares_memory(found, getattr(runs, name))
         assert (runs.velocities != 0).any()
         assert (runs.leds == 7).all()
+
+
+def test_user_data_and_columns_of_many_runs_are_those_of_each(hosted: Path, tmp_path: Path) -> None:
+    path = write_scene(tmp_path, {"simulation_time": 3, "objects.robots.nb": ROBOTS})
+    with pogosim.VectorSimulation(hosted, path, range(3), threads=2) as runs:
+        runs.step(150)
+        own = np.stack([sim.user_data for sim in runs])
+        assert all(np.array_equal(runs.user_data[name], own[name]) for name in own.dtype.names or ())
+        assert own["age"].all()
+        assert len(runs[0].columns) == 2
+        assert not np.shares_memory(runs.user_data, runs[0].user_data)
+        for name in runs[0].columns:
+            found, expected = runs.column(name), [sim.columns[name] for sim in runs]
+            assert found.dtype == expected[0].dtype
+            assert np.array_equal(found.mask, np.stack([values.mask for values in expected]))
+            assert np.array_equal(found.filled(0), np.stack([values.filled(0) for values in expected]))
+
+
+def test_received_messages_of_all_runs_are_those_of_each(tmp_path: Path) -> None:
+    with many(tmp_path, arena_surface=4e4) as runs:
+        brain = runs.brain("robots")
+        assert len(brain.received) == len(brain.received_bytes) == 0
+        brain.send_bytes[1:3, 0, 0] = [7, 8]
+        brain.send_length[1:3, 0] = 1
+        runs.step(10)
+        messages, payloads = brain.received, brain.received_bytes
+        assert set(messages["run"].tolist()) == {1, 2}
+        for run in (1, 2):
+            own = runs[run].brain("robots")
+            of_run = messages[messages["run"] == run]
+            assert of_run[["robot", "sender", "face", "length"]].tolist() == [
+                (*message.item()[:3], message.item()[3]) for message in own.received
+            ]
+            assert payloads[of_run["offset"]].tolist() == [6 + run] * len(own.received)
+        brain.clear_received()
+        assert len(brain.received) == 0
+
+
+@pytest.mark.parametrize("which", [[False, True, False, True], [1, 3], np.array([3, 1])])
+def test_some_begin_again_and_the_others_go_on(which: Any, tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        runs.step(5)
+        runs.reset([11, 13], which=which)
+        assert [sim.steps for sim in runs] == [5, 0, 5, 0]
+        seeds = [0, 11, 2, 13] if np.asarray(which)[0] != 3 else [0, 13, 2, 11]
+        assert [sim.seed for sim in runs] == seeds
+        runs.reset(which=2)
+        assert [(sim.steps, sim.seed) for sim in runs][2] == (0, 2)
+        runs.reset(which=runs.is_over)  # none
+        assert [sim.steps for sim in runs] == [5, 0, 0, 0]
+
+
+def test_wrong_choice_of_runs_is_refused(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        for which, message in (
+            ([1, 4], "which: there is no run 4: the simulation has 4"),
+            ([True], "which: expected 4 values of True or False, one for each, found 1"),
+            ([0.5], "which: expected an index, an array of indices, or True or False for each run"),
+            ([1, 1], "which: each run can be named once only"),
+        ):
+            with pytest.raises(pogosim.ConfigurationError, match=message):
+                runs.reset(which=which)
+        with pytest.raises(pogosim.ConfigurationError, match="seeds: expected 2, one for each run, found 1"):
+            runs.reset([5], which=[0, 1])
 
 
 def test_messages_go_out_once(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.simulation.errors import SimulationError
+from pogosim.simulation.errors import ConfigurationError, SimulationError, given
 from pogosim.simulation.library import ArrayPlace, OpenRun, check, library
 
 NO_BODY = 2**32 - 1
@@ -41,6 +41,35 @@ def writable(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     interface["data"] = (address, False)
     holder = type("UserData", (), {"__array_interface__": interface, "owner": array})()
     return np.asarray(holder)
+
+
+def chosen_rows(name: str, chosen: Any, count: int, what: str, where: str) -> npt.NDArray[np.int64]:
+    """Return the indices that an argument chooses.
+
+    Args:
+        name: That of the argument, as messages say it.
+        chosen: An index, an array of indices, or an array of booleans, one for each.
+        count: How many there are.
+        what: What is chosen: "link".
+        where: What has so many: "the run has".
+
+    Raises:
+        ConfigurationError: It is none of these, or there is nothing of an index.
+    """
+    rows = np.asarray(chosen)
+    if rows.dtype == np.bool_ and rows.ndim == 1:
+        if len(rows) != count:
+            raise ConfigurationError(
+                f"{name}: expected {count} values of True or False, one for each, found {len(rows)}"
+            )
+        rows = np.flatnonzero(rows)
+    if rows.ndim > 1 or (rows.size and not np.issubdtype(rows.dtype, np.integer)):
+        raise given.refused(name, f"an index, an array of indices, or True or False for each {what}", chosen)
+    rows = np.atleast_1d(rows).astype(np.int64)
+    outside = rows[(rows < 0) | (rows >= count)]
+    if len(outside):
+        raise ConfigurationError(f"{name}: there is no {what} {outside[0]}: {where} {count}")
+    return rows
 
 
 def check_process(process: int) -> None:

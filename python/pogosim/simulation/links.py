@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.simulation.arrays import RunState
+from pogosim.simulation.arrays import RunState, chosen_rows
 from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.library import LinkState, check, library
 from pogosim.simulation.objects import WorldObject
@@ -111,18 +111,6 @@ def make_link(
 def cut_links(run: RunState, links: Any) -> None:
     """Cut links, see `Simulation.cut`."""
     count = int(run.number("link_count"))
-    chosen = np.asarray(links)
-    if chosen.dtype == np.bool_ and chosen.ndim == 1:
-        if len(chosen) != count:
-            raise ConfigurationError(
-                f"links: expected {count} values of True or False, one for each, found {len(chosen)}"
-            )
-        chosen = np.flatnonzero(chosen)
-    if chosen.ndim > 1 or (chosen.size and not np.issubdtype(chosen.dtype, np.integer)):
-        raise given.refused("links", "an index, an array of indices, or True or False for each link", links)
-    chosen = np.atleast_1d(chosen)
-    outside = chosen[(chosen < 0) | (chosen >= count)]
-    if len(outside):
-        raise ConfigurationError(f"links: there is no link {outside[0]}: the run has {count}")
+    chosen = chosen_rows("links", links, count, "link", "the run has")
     indices = np.ascontiguousarray(chosen, dtype=np.uint32)
     check(library().pogosim_run_cut_links(run.pointer, indices.ctypes.data_as(c_void_p), len(indices)))

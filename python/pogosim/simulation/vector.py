@@ -14,8 +14,9 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.firmware import is_firmware
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import RunState, check_process
+from pogosim.simulation.arrays import RunState, check_process, chosen_rows
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
 from pogosim.simulation.library import OK
 from pogosim.simulation.many_runs import ManyRuns, RunThreads, all_held
@@ -131,18 +132,19 @@ class VectorSimulation:
             What it returned, in order. If it raises an exception for some runs, the others go on, and the first of
             these exceptions comes when all are ready. After Ctrl-C, runs that step stop between two time steps.
         """
-        check_process(self._process)  # a forked child has none of the threads
-        if self._is_closed:
-            raise SimulationError(CLOSED)
+        self._check_open()
         if not callable(function):
             raise given.refused("function", "a function of a Simulation", function)
+        return self._each(function, range(len(self)))
+
+    def _each(self, function: Callable[[Simulation], T], chosen: Sequence[int]) -> list[T]:
+        """Call a function with each of some runs."""
         self._check_outside("each, step and reset")
         context = copy_context()
         context.run(callers.set, (*callers.get(), self))
-        runs = enumerate(self.simulations)
         calls = [
-            self._threads.submit(context.copy().run, call_with_run, function, simulation, index)
-            for index, simulation in runs
+            self._threads.submit(context.copy().run, call_with_run, function, self.simulations[index], index)
+            for index in chosen
         ]
         try:
             wait(calls)
@@ -152,6 +154,11 @@ class VectorSimulation:
             self._pause(calls)
             raise
         return [call.result() for call in calls]
+
+    def _check_open(self) -> None:
+        check_process(self._process)  # a forked child has none of the threads
+        if self._is_closed:
+            raise SimulationError(CLOSED)
 
     def _check_outside(self, what: str) -> None:
         if self in callers.get():
@@ -233,13 +240,30 @@ class VectorSimulation:
             self._brains[name] = VectorBrain(self._runs, name, *sizes)
         return self._brains[name]
 
-    def reset(self, seeds: Sequence[int] | range | None = None) -> None:
-        """Begin all of them again, with these seeds or their own."""
-        new_seeds = [None] * len(self) if seeds is None else checked_seeds(seeds)
-        if len(new_seeds) != len(self):
-            raise ConfigurationError(f"seeds: expected {len(self)}, one for each run, found {len(new_seeds)}")
-        seed_of = dict(zip(map(id, self.simulations), new_seeds, strict=True))
-        self.each(lambda simulation: simulation.reset(seed_of[id(simulation)]))
+    def reset(self, seeds: Sequence[int] | range | None = None, which: npt.ArrayLike | None = None) -> None:
+        """Begin some of them again, or all.
+
+            runs.reset(which=runs.is_over)
+
+        Args:
+            seeds: One for each run that begins again; None: their own.
+            which: An index, an array of indices, or an array of booleans, one for each run; None: all.
+
+        Raises:
+            ConfigurationError: There are more or fewer seeds than runs, no run of an index, or one is there twice.
+        """
+        self._check_open()
+        if which is None:
+            chosen = list(range(len(self)))
+        else:
+            chosen = chosen_rows("which", which, len(self), "run", "the simulation has").tolist()
+        if len(set(chosen)) < len(chosen):
+            raise ConfigurationError("which: each run can be named once only")
+        new_seeds = [None] * len(chosen) if seeds is None else checked_seeds(seeds)
+        if len(new_seeds) != len(chosen):
+            raise ConfigurationError(f"seeds: expected {len(chosen)}, one for each run, found {len(new_seeds)}")
+        seed_of = {id(self.simulations[run]): seed for run, seed in zip(chosen, new_seeds, strict=True)}
+        self._each(lambda simulation: simulation.reset(seed_of[id(simulation)]), chosen)
 
     @property
     def positions(self) -> npt.NDArray[Any]:
@@ -255,6 +279,40 @@ class VectorSimulation:
     def velocities(self) -> npt.NDArray[Any]:
         """Velocities of all robots in the last step, mm/s. Shape (runs, robots, 2); a copy."""
         return self._read("bodies.velocity", lambda simulation: simulation.velocities)
+
+    @property
+    def angular_velocities(self) -> npt.NDArray[Any]:
+        """Angular velocities of all robots in the last step, rad/s. Shape (runs, robots); a copy."""
+        return self._read("bodies.angular_velocity", lambda simulation: simulation.angular_velocities)
+
+    @property
+    def light_levels(self) -> npt.NDArray[np.float64]:
+        """Light at each robot, as of `Simulation.light_levels`. Shape (runs, robots); a copy."""
+        return self._read("light_levels", lambda simulation: simulation.light_levels)
+
+    @property
+    def messages_sent(self) -> npt.NDArray[Any]:
+        """Messages that each robot has sent. Shape (runs, robots); a copy."""
+        return self._read("robots.messages_sent", lambda simulation: simulation.messages_sent)
+
+    @property
+    def messages_received(self) -> npt.NDArray[Any]:
+        """Messages that each robot has taken out of its queue. Shape (runs, robots); a copy."""
+        return self._read("robots.messages_received", lambda simulation: simulation.messages_received)
+
+    @property
+    def user_data(self) -> npt.NDArray[Any]:
+        """USERDATA of all robots, as of `Simulation.user_data`. Shape (runs, robots); a copy.
+
+        What is written to it reaches no robot: write to `runs[3].user_data`.
+
+        Raises:
+            SimulationError: The program has no user data, or was compiled without `-g`.
+        """
+        program = self.simulations[0].program if self.simulations else None
+        if program is not None and is_firmware(program):
+            return np.stack(alike([simulation.user_data for simulation in self.simulations]))
+        return self._read("robots.user_data", lambda simulation: simulation.user_data)
 
     @property
     def leds(self) -> npt.NDArray[Any]:
@@ -287,8 +345,12 @@ class VectorSimulation:
         Raises:
             KeyError: There is no such column.
         """
-        found = [simulation.columns[name] for simulation in self.simulations]
-        return found if any(isinstance(values, list) for values in found) else np.ma.stack(alike(found))
+        first = self.simulations[0].columns[name] if self.simulations else None
+        if not isinstance(first, np.ndarray):
+            return [simulation.columns[name] for simulation in self.simulations] or np.ma.stack(alike([]))
+        values = self._read(f"columns.{name}", lambda simulation: simulation.columns[name].data)
+        absent = self._read(f"columns_absent.{name}", lambda simulation: simulation.columns[name].mask)
+        return np.ma.MaskedArray(values, absent)
 
     @property
     def is_over(self) -> npt.NDArray[np.bool_]:

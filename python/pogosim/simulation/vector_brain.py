@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.simulation.brain import BrainArrays
+from pogosim.simulation.brain import RECEIVED, BrainArrays
 from pogosim.simulation.errors import ConfigurationError
 from pogosim.simulation.library import check, library
 from pogosim.simulation.many_runs import ManyRuns
@@ -29,6 +29,7 @@ READ: dict[str, tuple[tuple[int, ...], str]] = {
     "battery_mv": ((), "<i2"),
     "received_count": ((), "<u4"),
 }
+RECEIVED_IN_RUNS = np.dtype([("run", "<i4"), *RECEIVED.descr])
 TAKEN_BACK = "send_length"  # which a run sets to -1
 
 
@@ -40,8 +41,6 @@ class VectorBrain(BrainArrays):
     the steps, then takes the sensors, by one call each for all runs, and only for arrays that were asked for. So
     values that were written hold until others are, also over a reset. `runs[3].step()`, and what `each` calls, go by
     `runs[3].brain("robots")` alone. All runs need as many robots of the category.
-
-    Messages that were received are asked for run by run: `runs[3].brain("robots").received`.
 
         brain = runs.brain("robots")
         for _ in range(1000):
@@ -117,6 +116,44 @@ class VectorBrain(BrainArrays):
         for name, array in self._arrays.items():
             if name in READ or name == TAKEN_BACK:
                 runs.read(name, array, self._category)
+
+    @property
+    def received(self) -> npt.NDArray[Any]:
+        """Messages that were received since `clear_received`, those of a run together, as a structured array.
+
+        Its fields are run, robot (row), sender (id), face, and length and offset in `received_bytes`. Shape
+        (messages,); a copy, as of the end of the last step of each run.
+        """
+        runs = self._runs()
+        found, begin = [], 0
+        for run in self._with_messages(runs):
+            table = np.ascontiguousarray(runs.states[run].brain_array(self._category, "received", stays=False))
+            messages = np.empty(len(table), RECEIVED_IN_RUNS)
+            messages["run"] = run
+            for column, name in enumerate(RECEIVED.names or ()):
+                messages[name] = table[:, column]
+            messages["offset"] += begin
+            begin += len(runs.states[run].brain_array(self._category, "received_bytes", stays=False))
+            found.append(messages)
+        return np.concatenate(found) if found else np.zeros(0, RECEIVED_IN_RUNS)
+
+    @property
+    def received_bytes(self) -> npt.NDArray[np.uint8]:
+        """The payloads of all these messages, one after the other. A copy: take it once for many messages."""
+        runs = self._runs()
+        found = [
+            runs.states[run].brain_array(self._category, "received_bytes", stays=False)
+            for run in self._with_messages(runs)
+        ]
+        return np.concatenate(found) if found else np.zeros(0, np.uint8)
+
+    def _with_messages(self, runs: ManyRuns) -> list[int]:
+        """Return the runs that have received messages: one call of the library for all, since most have none."""
+        for run in range(len(runs.states)):
+            self._check_size(runs, run)
+        counts = np.zeros((len(runs.states), self._robots), dtype=np.uint32)
+        runs.read("received_count", counts, self._category)
+        return np.flatnonzero(counts.any(axis=1)).tolist()
 
     def clear_received(self) -> None:
         """Forget the messages that all runs have received, see `Brain.clear_received`."""
