@@ -29,6 +29,7 @@ from pogosim.lines import counted
 
 LOSSES_PER_RUN = 5
 REMIND_S = 60.0
+LEAVING_S = 3.0
 ROLES = ("scheduler", "worker", "client")
 
 
@@ -99,6 +100,7 @@ class QueuedWorkers:
         try:
             settings["security"] = with_keys(distributed.Security, self.folder)
             self.cluster = cluster_class(silence_logs=logging.CRITICAL, **settings)
+            self.cluster.scheduler.add_plugin(noting_joined(distributed, self.joined), name="pogosim-joined")
             self.client = distributed.Client(self.cluster)
         except (OSError, ValueError, RuntimeError, TypeError) as error:
             raise BatchError(
@@ -177,7 +179,6 @@ class QueuedWorkers:
             BatchError: Job after job is lost.
         """
         workers = runs_of_workers(self.cluster)
-        self.joined |= set(workers) & set(self.jobs)
         if not self.keep_idle:
             for name in idle(self.jobs, workers, self.cores, left):
                 self.cancel(self.jobs.pop(name))
@@ -215,6 +216,9 @@ class QueuedWorkers:
                 self.client.close(timeout=5)
         for job in self.jobs.values():
             self.cancel(job)
+        end_s = time.monotonic() + LEAVING_S
+        while self.cluster is not None and self.cluster.scheduler.workers and time.monotonic() < end_s:
+            time.sleep(0.05)  # a scheduler that ends while its workers do disturbs them
         if self.cluster is not None:
             with contextlib.suppress(Exception):
                 self.cluster.close(timeout=5)
@@ -222,6 +226,16 @@ class QueuedWorkers:
             forget_keys(self.folder)
             if not self.keeps_logs:
                 shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def noting_joined(distributed: Any, joined: set[str]) -> Any:
+    """Return a plugin of a scheduler that notes the names of workers when they join: some are lost soon afterwards."""
+
+    class Noting(distributed.SchedulerPlugin):  # type: ignore[misc]
+        def add_worker(self, scheduler: Any, worker: str) -> None:
+            joined.add(str(scheduler.workers[worker].name))
+
+    return Noting()
 
 
 def runs_of_workers(cluster: Any) -> dict[str, int]:
