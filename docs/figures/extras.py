@@ -14,7 +14,7 @@ from quotes import Quote
 NAMES = ("installing.md: extras",)
 PURPOSES = {
     "dask": "batches with `--backend dask` or `--scheduler`",
-    "slurm": "batches with `--slurm`",
+    "slurm": "batches with `--slurm` or `--jobqueue`",
     "learning": "[learning](learning.md)",
     "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`",
 }

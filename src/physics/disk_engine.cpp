@@ -45,7 +45,7 @@ constexpr float kLeastReachMm = 0.5F;
 constexpr float kSweptShare = 0.5F;
 // Smallest size of a range that one worker takes.
 constexpr std::uint32_t kLeastIslands = 64;
-constexpr std::uint32_t kAhead = 3;  // islands are prefetched so many ahead
+constexpr std::uint32_t kIslandsAhead = 3;  // islands are prefetched so many ahead
 constexpr std::uint32_t kLeastBodies = 1024;
 // A membrane that has been slower than this for kCalmAfterS is put to rest; a robot's full speed is a hundred times as
 // high.
@@ -150,8 +150,8 @@ private:
         workers_.run_ranges(count, kLeastIslands, [&](WorkRange range) {
             IslandSolver& solver = solvers_[range.worker];
             for (std::uint32_t i = range.first; i < range.last; ++i) {
-                if (is_large && i + kAhead < range.last && islands[i + kAhead].is_active) {
-                    solver.expect(world, contacts_, islands_, islands[i + kAhead]);
+                if (is_large && i + kIslandsAhead < range.last && islands[i + kIslandsAhead].is_active) {
+                    solver.expect(world, contacts_, islands_, islands[i + kIslandsAhead]);
                 }
                 if (islands[i].is_active &&
                     solver.solve(world, assemblies_, contacts_, islands_, islands[i], is_driven)) {

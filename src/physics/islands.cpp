@@ -13,7 +13,7 @@ namespace pogosim {
 namespace {
 
 constexpr std::uint32_t kLeastRange = 2048;  // contacts
-constexpr std::uint32_t kAhead = 32;         // bodies of a contact are prefetched so many contacts ahead
+constexpr std::uint32_t kPairsAhead = 32;    // bodies of a contact are prefetched so many contacts ahead
 
 void prefetch_motion(World const& world, std::uint32_t body) {
     __builtin_prefetch(&world.bodies.position_mm[body]);
@@ -43,7 +43,8 @@ void Islands::find_pairs(World const& world, NearContacts const& contacts, Reach
     std::size_t count = 0;
     bool const is_large = fills_caches(world);
     for (std::uint32_t first = pairs.first; first < pairs.last; first += kLanes) {
-        for (std::uint32_t i = first + kAhead; is_large && i < std::min(first + kAhead + kLanes, pairs.last); ++i) {
+        for (std::uint32_t i = first + kPairsAhead; is_large && i < std::min(first + kPairsAhead + kLanes, pairs.last);
+             ++i) {
             prefetch_motion(world, contacts.near()[i].a);
             prefetch_motion(world, contacts.near()[i].b);
         }
