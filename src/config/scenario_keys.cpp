@@ -190,6 +190,10 @@ std::span<Key<FormationSpec> const> formation_keys() {
         K{"formation_filename", &FormationSpec::filename, any(), "",
           "imported: CSV or Feather file with columns x, y and optionally angle; searched like arena_file."}
             .needing_a_name(),
+        K{"formation_time", NumberOr<FormationSpec>{&FormationSpec::time_s, "last"}, between(0, 1e9), "s",
+          "imported: time of the rows in the file, the last one at or before this; 0: the first of the file; last: its "
+          "last."}
+            .only_if(is_imported),
         K{"imported_formation_min_coords", &FormationSpec::imported_min, any().or_nan(), "unit of the file",
           "imported: corner of the file's box that is mapped onto the arena's bounding box; .nan: no mapping."}
             .only_if(is_imported),

@@ -53,6 +53,7 @@ struct FormationSpec {
     LatticeKind lattice_kind = LatticeKind::triangular;
     std::optional<float> lattice_spacing_mm{};  // between neighbours; absent: lattice_spacing_of()
     std::string filename;                       // imported: csv or feather
+    std::optional<double> time_s = 0.0;         // imported: of the rows; 0: the first of the file; absent: the last
     RowsOfOthers rows_of_others{};              // imported
     std::vector<CategoryCount> categories{};    // imported: of all objects that get a row, in their order
     std::vector<std::string> placed_apart{};    // imported: categories that get none
@@ -79,7 +80,7 @@ struct ImportedPose {
     double x = 0.0;  // mm, or in the unit of imported_min and imported_max
     double y = 0.0;
     double heading_rad = std::numeric_limits<double>::quiet_NaN();  // NaN: not given, drawn at random
-    double time_s = 0.0;                                            // only the rows of the smallest time count
+    double time_s = 0.0;                                            // only the rows of one time count
     std::size_t row = 0;                                            // line of a csv file, row of a table; for messages
     std::shared_ptr<std::string const> category{};                  // in a data file of a run; its rows share it
     bool is_part = false;                                           // a dot of a membrane

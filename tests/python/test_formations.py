@@ -200,3 +200,24 @@ def test_objects_at_the_same_place_part(tmp_path: Path, engine: str) -> None:
     last = result.frame().groupby("robot_id").last()[["x", "y"]].to_numpy()
     apart = [math.dist(a, b) for i, a in enumerate(last) for b in last[:i]]
     assert min(apart) > 2 * 26.0
+
+
+def test_run_begins_where_an_earlier_one_was(tmp_path: Path) -> None:
+    program = example("run_and_tumble")
+    earlier = run(program, tmp_path / "earlier", {"objects.robots.nb": 8}).frame()
+    settings = {
+        "objects.robots.nb": 8,
+        "initial_formation": "imported",
+        "formation_filename": str(tmp_path / "earlier" / "data.feather"),
+    }
+    for time, expected in (("last", 2.0), (0.55, 0.5), (1.2, 1.2), (0, 0.0), (2.0, 2.0)):
+        result = run(program, tmp_path / "later", {**settings, "formation_time": time, "simulation_time": 0.1})
+        assert result.code == 0, result.text
+        now = result.frame().query("time == 0").set_index("robot_id")[["x", "y", "angle"]]
+        then = earlier[(earlier.time - expected).abs() < 1e-9].set_index("robot_id")[["x", "y", "angle"]]
+        pd.testing.assert_frame_equal(now, then, atol=1e-4)
+    late = run(program, tmp_path / "late", {**settings, "formation_time": 3})
+    assert late.code == 2
+    assert "formation_time: " in late.errors
+    assert "has no rows of t = 3 s: its 21 times are from 0 to 2 s; 'last' takes the last one" in late.errors
+    assert run(program, tmp_path / "late", {**settings, "formation_time": "first"}).code == 2

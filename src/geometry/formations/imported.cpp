@@ -160,11 +160,46 @@ ImportedPoses read_poses(PlacementTask const& task) {
     return task.read_feather(path);
 }
 
-/// Keeps the rows of the smallest time.
-void keep_first_instant(std::vector<ImportedPose>& poses) {
-    if (!poses.empty()) {
-        double const start_s = std::ranges::min_element(poses, {}, &ImportedPose::time_s)->time_s;
-        std::erase_if(poses, [&](ImportedPose const& pose) { return pose.time_s != start_s; });
+constexpr char const* kTimeKey = "formation_time";
+
+/// The times of rows, ascending. Those without one come never.
+std::vector<double> times_of(std::vector<ImportedPose> const& poses) {
+    std::vector<double> times;
+    for (ImportedPose const& pose : poses) {
+        if (!std::isnan(pose.time_s) && (times.empty() || times.back() != pose.time_s)) {
+            times.push_back(pose.time_s);
+        }
+    }
+    std::ranges::sort(times);
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+/// The time in the file that formation_time names.
+double chosen_time_s(FormationSpec const& spec, std::vector<double> const& times) {
+    constexpr double tolerance_s = 1e-9;
+    if (!spec.time_s) {
+        return times.back();
+    }
+    if (*spec.time_s == 0.0) {
+        return times.front();
+    }
+    if (*spec.time_s < times.front() - tolerance_s || *spec.time_s > times.back() + tolerance_s) {
+        std::string const present = times.size() > 1 ? fmt::format("its {} times are from {} to {} s", times.size(),
+                                                                   times.front(), times.back())
+                                                     : fmt::format("its only time is {} s", times.front());
+        throw FormationError(kTimeKey, fmt::format("'{}' has no rows of t = {} s: {}; 'last' takes the last one",
+                                                   spec.filename, *spec.time_s, present));
+    }
+    return *std::prev(std::ranges::upper_bound(times, *spec.time_s + tolerance_s));
+}
+
+/// Keeps the rows of the time that is asked for.
+void keep_instant(FormationSpec const& spec, std::vector<ImportedPose>& poses) {
+    std::vector<double> const times = times_of(poses);
+    if (!times.empty()) {
+        double const time_s = chosen_time_s(spec, times);
+        std::erase_if(poses, [time_s](ImportedPose const& pose) { return pose.time_s != time_s; });
     }
 }
 
@@ -294,20 +329,21 @@ void warn_of_degrees(PlacementTask const& task, std::vector<ImportedPose> const&
 std::vector<Placement> place_imported(PlacementTask const& task) {
     ImportedPoses file = read_poses(task);
     std::vector<ImportedPose>& poses = file.rows;
-    keep_first_instant(poses);
+    keep_instant(task.spec, poses);
     sort_by_category(task.spec, poses);
     std::size_t const count = task.radii_mm.size();
     RowsOfOthers const& others = task.spec.rows_of_others;
     std::size_t const needed = count + others.count;
+    std::string const what = task.spec.time_s == 0.0 || poses.empty()
+                                 ? "rows with the first time value"
+                                 : fmt::format("rows of t = {} s", poses.front().time_s);
     if (poses.size() < needed) {
-        throw ConfigError(
-            fmt::format("{}: expected at least {} (rows with the first time value), one for each object, found {}",
-                        task.spec.filename, counted(needed, "pose"), poses.size()));
+        throw ConfigError(fmt::format("{}: expected at least {} ({}), one for each object, found {}",
+                                      task.spec.filename, counted(needed, "pose"), what, poses.size()));
     }
     if (poses.size() > needed && !others.may_follow) {
-        log().warn("{}: has {} poses (rows with the first time value) for {}; the last {} {} ignored",
-                   task.spec.filename, poses.size(), counted(needed, "object"), poses.size() - needed,
-                   poses.size() - needed == 1 ? "is" : "are");
+        log().warn("{}: has {} poses ({}) for {}; the last {} {} ignored", task.spec.filename, poses.size(), what,
+                   counted(needed, "object"), poses.size() - needed, poses.size() - needed == 1 ? "is" : "are");
     }
     if (others.count == 0 || others.may_follow) {  // for a file of several tasks, once
         say(task, file.remark);
