@@ -1,23 +1,18 @@
 #include "sim/flash_state.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <random>
 #include <string_view>
 #include <system_error>
 
 #include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/scratch_file.hpp"
+#include "base/new_file.hpp"
 #include "config/places.hpp"
 
 namespace pogosim {
@@ -25,8 +20,6 @@ namespace pogosim {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr mode_t kPermissions = 0777;
 
 /// Throws ConfigError if the archive cannot name all robots.
 RobotsByOwner robots_by_owner(Scenario const& scenario, World const& world) {
@@ -53,90 +46,6 @@ FlashRecord record_of(FlashOwner const& owner, Devices const& devices, std::size
             .powers = devices.motors[robot].stored_power,
             .flash = devices.flash[robot]};
 }
-
-void write_all(int descriptor, std::string_view bytes) {
-    while (!bytes.empty()) {
-        ssize_t const written = write(descriptor, bytes.data(), bytes.size());
-        if (written < 0 && errno != EINTR) {
-            fail_with_errno(errno);
-        }
-        bytes.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
-    }
-}
-
-void make_parent_folder(fs::path const& path) {
-    std::error_code error;
-    if (!path.parent_path().empty() && !fs::create_directories(path.parent_path(), error) && error) {
-        throw FileError(fmt::format("cannot make the folder '{}': {}", path.parent_path().string(), error.message()));
-    }
-}
-
-/// A file of its own name beside another one, whose place it takes when it is complete.
-class NewFile {
-public:
-    explicit NewFile(fs::path const& target) : target_(target) {
-        constexpr mode_t kNewFile = 0666;  // reduced by the umask
-        constexpr int kMostAttempts = 100;
-        std::random_device nonce;
-        for (int i = 0; i < kMostAttempts && descriptor_ < 0 && (i == 0 || errno == EEXIST); ++i) {
-            path_ = fmt::format("{}.tmp.{:08x}", target.native(), nonce());
-            descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kNewFile);
-        }
-        if (descriptor_ < 0) {
-            fail_with_errno(errno);
-        }
-        scratch_.emplace(path_);
-    }
-    ~NewFile() {
-        scratch_.reset();
-        close(descriptor_);
-    }
-    NewFile(NewFile const&) = delete;
-    NewFile& operator=(NewFile const&) = delete;
-
-    int descriptor() const { return descriptor_; }
-
-    /// Replaces the other file, and has its permissions then.
-    void replace(LockedFile const& other) {
-        struct stat before = {};
-        must_succeed(fstat(other.descriptor(), &before));
-        must_succeed(fchmod(descriptor_, before.st_mode & kPermissions));
-        must_succeed(fsync(descriptor_));
-        must_succeed(std::rename(path_.c_str(), target_.c_str()));
-        scratch_->release();
-        sync_folder();
-    }
-
-    /// Takes the place if it is free; else whatever stands there stays.
-    void take_free_place() {
-        must_succeed(fsync(descriptor_));
-        if (link(path_.c_str(), target_.c_str()) != 0 && errno != EEXIST) {  // some file systems have no links
-            must_succeed(std::rename(path_.c_str(), target_.c_str()));
-            scratch_->release();
-        }
-        sync_folder();
-    }
-
-private:
-    static void must_succeed(int result) {
-        if (result != 0) {
-            fail_with_errno(errno);
-        }
-    }
-
-    void sync_folder() const {
-        int const folder = open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (folder >= 0) {
-            fsync(folder);
-            close(folder);
-        }
-    }
-
-    fs::path target_;
-    std::string path_;
-    std::optional<ScratchFile> scratch_;
-    int descriptor_ = -1;
-};
 
 [[noreturn]] void refuse_input(Scenario const& scenario, std::string const& reason) {
     throw ConfigError(fmt::format("{}: '{}': {}", place_of(scenario, Setting::flash_input_file),
