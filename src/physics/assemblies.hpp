@@ -15,6 +15,11 @@ struct Assembly {
     std::vector<std::uint32_t> membranes;
     std::vector<std::uint32_t> hinges;  // joints of its membranes
     std::vector<std::uint32_t> links;   // that are not cut
+
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.bodies, self.membranes, self.hinges, self.links);
+    }
 };
 
 /// Impulses of a hinge or link in the last sub-step, which are the initial guess for the next one.
@@ -43,6 +48,12 @@ public:
 
     HeldImpulse& impulse_of_joint(std::uint32_t joint) { return impulses_[joint]; }
     HeldImpulse& impulse_of_link(std::uint32_t link) { return impulses_[joint_count_ + link]; }
+
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.assemblies_, self.first_body_, self.place_, self.hinged_, self.impulses_, self.link_changes_);
+    }
 
 private:
     void find(World const& world);

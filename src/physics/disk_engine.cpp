@@ -70,7 +70,7 @@ public:
           position_correction_(world),
           wall_neighbour_list_(world, position_correction_.walls()),
           neighbour_list_(world),
-          contacts_(world, walls),
+          contacts_(world, walls, wall_neighbour_list_.sides()),
           damping_(world.bodies),
           assemblies_(world),
           solvers_(workers.size(), IslandSolver(world)),
@@ -139,6 +139,18 @@ public:
     }
 
     std::unique_ptr<PhysicsEngine> copy() const override { return std::make_unique<DiskEngine>(*this); }
+
+    void append_state(StateWriter& state) const override { visit_state(*this, state); }
+    void take_state(StateReader& state) override { visit_state(*this, state); }
+
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.position_correction_, self.wall_neighbour_list_, self.neighbour_list_, self.contacts_,
+              self.assemblies_, self.start_, self.calm_s_, self.has_overlaps_, self.moved_);
+        if (self.sides_) {
+            state(*self.sides_);
+        }
+    }
 
 private:
     /// Islands do not interact, so results do not depend on which worker solves which island.

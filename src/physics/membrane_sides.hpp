@@ -25,6 +25,12 @@ public:
     /// Stores sides and poses anew, after objects were moved from outside.
     void look_again(World const& world);
 
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.sides_, self.poses_);
+    }
+
 private:
     struct Pose {
         Vec2 position_mm;
@@ -39,6 +45,11 @@ private:
         Box box{};                                // around it
         std::vector<std::uint32_t> was_inside{};  // before the step
         std::vector<std::uint32_t> is_inside{};   // and now
+
+        template <class Self, class State>
+        static void visit_state(Self& self, State& state) {
+            state(self.was_inside, self.is_inside);
+        }
     };
 
     bool any_body_crossed(World const& world);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "physics/body_mass.hpp"
 #include "physics/membrane_mass.hpp"
@@ -26,7 +27,7 @@ ContactLaw law_between(Disk const& a, Disk const& b) {
 
 }  // namespace
 
-NearContacts::NearContacts(World const& world, WallSpec const& walls)
+NearContacts::NearContacts(World const& world, WallSpec const& walls, std::shared_ptr<WallSides const> sides)
     : membranes_(world),
       hulls_(world),
       wall_{.radius_mm = 0.0F,
@@ -34,7 +35,8 @@ NearContacts::NearContacts(World const& world, WallSpec const& walls)
             .inverse_inertia = 0.0F,
             .friction = walls.friction,
             .restitution = walls.restitution},
-      spring_impulse_(world.joints.size()) {
+      spring_impulse_(world.joints.size()),
+      sides_(std::move(sides)) {
     Bodies const& bodies = world.bodies;
     std::vector<float> mass;
     std::vector<float> gyration_mm2;
@@ -77,7 +79,6 @@ void NearContacts::add_fixed(World const& world, std::uint32_t disk, std::uint32
 
 void NearContacts::build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
                          WallNeighbourList const& walls) {
-    walls_ = walls.sides();
     keep_impulses();
     near_.clear();
     with_fixed_.clear();
@@ -208,7 +209,7 @@ void NearContacts::give_impulses() {
 std::optional<Gap> NearContacts::gap_to_fixed(World const& world, std::uint32_t contact, Vec2 point_mm) const {
     std::uint32_t const fixed = near_[contact].b;
     if (contact >= first_wall_) {
-        return gap_to((*walls_)[fixed], point_mm);
+        return gap_to((*sides_)[fixed], point_mm);
     }
     if (hulls_.is_one(fixed)) {
         return hulls_.gap_to(world, fixed, fixed_part_[contact - pair_count_], point_mm);

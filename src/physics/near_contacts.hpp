@@ -69,7 +69,8 @@ inline Gap gap_to_centre(Vec2 way) {
 
 class NearContacts {
 public:
-    NearContacts(World const& world, WallSpec const& walls);
+    /// `sides`: of all walls, see WallNeighbourList::sides().
+    NearContacts(World const& world, WallSpec const& walls, std::shared_ptr<WallSides const> sides);
 
     /// Builds the contacts from the neighbour lists.
     void build(World const& world, Assemblies const& assemblies, NeighbourList const& pairs,
@@ -92,7 +93,7 @@ public:
     bool is_wall(std::uint32_t contact) const {
         return contact < first_hull_ ? contact >= first_wall_ : contact >= first_hull_wall_;
     }
-    WallSide const& wall_side(std::uint32_t contact) const { return (*walls_)[near_[contact].b]; }
+    WallSide const& wall_side(std::uint32_t contact) const { return (*sides_)[near_[contact].b]; }
 
     /// Impulse of each contact at the last step in which motors drove it, 0 for a new one: the initial guess for the
     /// next such step.
@@ -118,6 +119,14 @@ public:
 
     /// The gap of a contact of a hull if it is below `beyond_mm`, else at least that; to a wall, at most the gap.
     float gap_of_hull_mm(World const& world, std::uint32_t contact, float beyond_mm) const;
+
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.near_, self.fixed_part_, self.hull_parts_, self.driven_impulse_, self.hull_impulse_,
+              self.spring_impulse_, self.pair_count_, self.first_wall_, self.first_hull_, self.first_hull_fixed_,
+              self.first_hull_wall_);
+    }
 
 private:
     bool is_fixed(std::uint32_t body) const { return disks_[body].inverse_mass == 0.0F; }
@@ -162,7 +171,7 @@ private:
     std::uint32_t first_hull_ = 0;
     std::uint32_t first_hull_fixed_ = 0;
     std::uint32_t first_hull_wall_ = 0;
-    std::shared_ptr<WallSides const> walls_;
+    std::shared_ptr<WallSides const> sides_;
 };
 
 }  // namespace pogosim

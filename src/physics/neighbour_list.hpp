@@ -34,6 +34,12 @@ public:
     std::span<NeighbourPair const> pairs() const { return pairs_; }
     float skin_mm() const { return skin_mm_; }
 
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.skin_mm_, self.built_mm_, self.pairs_, self.is_built_);
+    }
+
 private:
     /// A body in the copy that the search works on, which is sorted by cell.
     struct Item {

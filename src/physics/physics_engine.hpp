@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/state_bytes.hpp"
 #include "base/worker_pool.hpp"
 #include "world/world.hpp"
 
@@ -42,6 +43,10 @@ public:
 
     /// A copy, which goes on as this one does with the world as it is now. Null: this engine cannot be copied.
     virtual std::unique_ptr<PhysicsEngine> copy() const { return nullptr; }
+
+    /// What the next steps depend on besides the world, of an engine that can be copied: see state_bytes.hpp.
+    virtual void append_state(StateWriter& /*state*/) const {}
+    virtual void take_state(StateReader& /*state*/) {}
 
 protected:
     PhysicsEngine(PhysicsEngine const&) = default;

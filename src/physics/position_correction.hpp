@@ -60,6 +60,12 @@ public:
 
     WallIndex const& walls() const { return walls_; }
 
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.clearances_);
+    }
+
 private:
     // A body is put back when it has sunk into a wall by this share of its inner radius.
     static constexpr float kSunkShare = 0.5F;

@@ -25,6 +25,12 @@ public:
         }
     }
 
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.was_still_);
+    }
+
 private:
     bool was_still_ = false;  // the last step
 };

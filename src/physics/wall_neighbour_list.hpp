@@ -31,6 +31,12 @@ public:
     /// All of them, which stay as they are.
     std::shared_ptr<WallSides const> const& sides() const { return sides_; }
 
+    /// What later steps depend on, see state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.near_);
+    }
+
 private:
     std::shared_ptr<WallSides const> sides_;
     std::vector<NeighbourWall> near_;

@@ -76,6 +76,12 @@ struct Flash {
     std::vector<FlashPage> pages{};     // in the order of their first write
     std::uint64_t lost_writes = 0;      // after which a page did not contain what was written, see program_page()
 
+    /// See state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.slot, self.pages, self.lost_writes);
+    }
+
     friend bool operator==(Flash const&, Flash const&) = default;
 };
 

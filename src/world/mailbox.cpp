@@ -176,6 +176,26 @@ std::array<std::span<std::byte const>, 2> Mailboxes::waiting(std::size_t robot) 
     return {queue.near.bytes(queue.near_block.data()), far.fifo.bytes(far_blocks_.get() + far.block)};
 }
 
+void Mailboxes::append_state(StateWriter& state) const {
+    state(queues_, far_, dropped_, malformed_, commands_);
+    for (FarQueue const& far : far_) {
+        state.add_bytes(far.fifo.bytes(far_blocks_.get() + far.block));
+    }
+}
+
+void Mailboxes::take_state(StateReader& state) {
+    std::size_t const robots = queues_.size();
+    std::size_t const bytes = far_bytes();
+    state(queues_, far_, dropped_, malformed_, commands_);
+    if (queues_.size() != robots || far_.size() != robots || far_bytes() != bytes) {
+        throw ForeignState("its robots have other queues of messages");
+    }
+    for (FarQueue const& far : far_) {
+        std::span const messages = state.take_bytes(far.fifo.tail - far.fifo.head);
+        std::ranges::copy(messages, far_blocks_.get() + far.block + far.fifo.head);
+    }
+}
+
 void Mailboxes::remove_all(std::size_t robot) {
     queues_[robot].waiting = 0;
     queues_[robot].near = {};

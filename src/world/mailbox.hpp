@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "base/state_bytes.hpp"
+
 namespace pogosim {
 
 inline constexpr std::size_t kMostPayloadBytes = 382;
@@ -142,6 +144,10 @@ public:
 
     /// Headers and payloads of the waiting messages, oldest first, in two blocks.
     std::array<std::span<std::byte const>, 2> waiting(std::size_t robot) const;
+
+    /// See state_bytes.hpp. Throws ForeignState for a state of other robots.
+    void append_state(StateWriter& state) const;
+    void take_state(StateReader& state);
 
     void clear(std::size_t robot) {
         if (!empty(robot)) {

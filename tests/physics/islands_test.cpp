@@ -28,7 +28,7 @@ struct Finder {
         : places(world),
           pairs(world),
           wall_neighbour_list(world, places.walls()),
-          contacts(world, {}),
+          contacts(world, {}, wall_neighbour_list.sides()),
           assemblies(world) {
         build(world);
     }
