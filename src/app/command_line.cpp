@@ -27,6 +27,8 @@ std::string is_seed(std::string const& text) {
     return is_decimal<std::uint32_t>(text) ? "" : "expected a whole number from 0 to 4294967295, found '" + text + "'";
 }
 
+constexpr double kMostSeconds = 1e9;  // of simulated time
+
 /// Empty for a port of gdb, otherwise an error message.
 std::string is_port(std::string const& text) {
     return is_decimal<std::uint16_t>(text)
@@ -88,6 +90,19 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->check(is_seed)
         ->needs(gdb);
     app.add_option("--video", options.video, "make a film of the run (.mp4, .webm or .gif), with ffmpeg")
+        ->type_name("FILE")
+        ->check(is_not_empty);
+    CLI::Option* const save_state =
+        app.add_option("--save-state", options.save_state,
+                       "save the state of the run in this file at its end, also when it is interrupted")
+            ->type_name("FILE")
+            ->check(is_not_empty);
+    app.add_option("--at", options.save_at_s, "with --save-state: save it at this simulated time; the run goes on")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.0, kMostSeconds))
+        ->needs(save_state);
+    app.add_option("--from-state", options.from_state,
+                   "go on from the state in this file: same program and configuration, which may end later")
         ->type_name("FILE")
         ->check(is_not_empty);
     app.add_option("--set", options.overrides,

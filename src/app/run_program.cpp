@@ -92,12 +92,12 @@ Conversions conversions(CommandLine const& options) {
     return options.strict_config ? Conversions::exact : options.strict ? Conversions::typed : Conversions::lenient;
 }
 
-void tell_of(std::vector<KeptFile> const& files) {
+void tell_of(std::vector<KeptFile> const& files, bool is_watched) {
     for (KeptFile const& file : files) {
         std::error_code error;  // then it is the whole path
-        log().info("'{}' of an earlier run is now '{}' (-g overwrites instead)",
+        log().info("'{}' of an earlier run is now '{}'{}",
                    escaped(std::filesystem::proximate(file.path, error).string()),
-                   escaped(file.kept.filename().string()));
+                   escaped(file.kept.filename().string()), is_watched ? " (-g overwrites instead)" : "");
     }
 }
 
@@ -161,6 +161,29 @@ void check_profile_file(Scenario const& scenario, CommandLine const& options) {
     }
 }
 
+/// The state of a run must not take the place of another file of it.
+void check_state_file(Scenario const& scenario, CommandLine const& options) {
+    if (!options.save_state.empty() && is_used_file(scenario, options.video, options.save_state)) {
+        throw ConfigError(
+            fmt::format("--save-state would overwrite '{}', which the run needs or writes; choose another file",
+                        escaped(options.save_state)));
+    }
+}
+
+/// Null without --from-state. The run has the seed of the state.
+std::shared_ptr<SavedState const> take_state(Scenario& scenario, CommandLine const& options) {
+    if (options.from_state.empty()) {
+        return nullptr;
+    }
+    auto saved = std::make_shared<SavedState>(read_state(options.from_state));
+    if (options.seed && *options.seed != saved->seed) {
+        throw ConfigError(fmt::format("--from-state: '{}' is of a run with seed {}, not {}: leave out --seed",
+                                      options.from_state, saved->seed, *options.seed));
+    }
+    scenario.seed = saved->seed;
+    return saved;
+}
+
 /// A program that has nothing to do was perhaps to do something.
 void tell_of_idle_program(Scenario const& scenario) {
     auto const& objects = scenario.objects;
@@ -222,14 +245,17 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     check_needs_no_host(scenario);
     check_used_files(scenario, options.video);
     check_profile_file(scenario, options);
+    check_state_file(scenario, options);
+    std::shared_ptr<SavedState const> const from_state = take_state(scenario, options);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {
         logging.file = scenario.output.console_filename;
+        logging.appends = from_state != nullptr;
     }
     start_logging(logging);
 
     if (restarted) {
-        log().info("restarted with seed {}", restarted->seed);
+        log().info("restarted with seed {}", *scenario.seed);
     }
     if (program.main != nullptr) {
         tell_of_idle_program(scenario);
@@ -248,12 +274,17 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .window = window,
                            .close_at_end = options.close_at_end,
                            .program_name = options.program_name,
+                           .save_state = options.save_state,
+                           .save_state_at_s = options.save_at_s,
+                           .from_state = from_state,
                            .restarted = restarted,
                            .check_restart = [&] { return check_restart(options, folder); }};
     check_flash_output(scenario);
-    // A run that is watched replaces nothing that an earlier one has written.
-    bool const keeps = window && has_display() && !(restarted && restarted->overwrite);
-    std::vector<KeptFile> const kept = keeps ? keep_earlier_files(scenario, options.video) : std::vector<KeptFile>();
+    // A run that is watched, or goes on, replaces nothing that an earlier one has written.
+    bool const is_watched = window && has_display() && !(restarted && restarted->overwrite);
+    std::vector<KeptFile> const kept = from_state   ? keep_earlier_part(scenario, options.video)
+                                       : is_watched ? keep_earlier_files(scenario, options.video)
+                                                    : std::vector<KeptFile>();
     std::unique_ptr<Simulation, DestroyIfIntact> simulation;
     try {
         simulation.reset(
@@ -262,7 +293,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
         give_back(kept);
         throw;
     }
-    tell_of(kept);
+    tell_of(kept, is_watched);
     ProcessRun const scope(simulation->crash_handler());
     auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();

@@ -159,7 +159,7 @@ spdlog::sink_ptr make_file(LogOptions const& options, LockedFile& lock) {
     try {
         lock = lock_file(options.file);
         PipeReader const reader(options.file);
-        auto file = std::make_shared<spdlog::sinks::basic_file_sink_st>(options.file, /*truncate=*/true);
+        auto file = std::make_shared<spdlog::sinks::basic_file_sink_st>(options.file, /*truncate=*/!options.appends);
         file->set_pattern(kDatedPattern);
         file->set_level(options.verbose ? spdlog::level::debug : spdlog::level::info);
         return file;

@@ -24,6 +24,7 @@ struct LogOptions {
     bool show_robot_lines = true;  // printf lines of robots on the console (the file always has them)
     bool minimal = false;          // console lines without date and level
     std::string file{};            // path of the console file; empty: none
+    bool appends = false;          // to what is in that file
     // Gets the lines instead of the console; empty: the console gets them.
     std::function<void(LogLine const& line)> on_line{};
 };

@@ -23,6 +23,19 @@ void Brain::restore(SavedBrain const& saved) {
     take_state(bytes);
 }
 
+void Brain::append_for_process(StateWriter& state) {
+    std::vector<std::byte> bytes;
+    append_state(bytes);
+    state(bytes);
+}
+
+void Brain::take_from_process(StateReader& state) {
+    std::vector<std::byte> bytes;
+    state(bytes);
+    std::span<std::byte const> rest = bytes;
+    take_state(rest);
+}
+
 RobotRange robots_of(World const& world, std::uint32_t category) {
     auto const& of_robots = world.robots.category;
     auto const first = std::ranges::lower_bound(of_robots, category);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/state_bytes.hpp"
 #include "process/crash_handler.hpp"
 #include "process/variable_text.hpp"
 #include "world/data_table.hpp"
@@ -82,6 +83,15 @@ public:
     /// otherwise, for take_state(), which takes them from the front of `bytes`.
     virtual void append_state(std::vector<std::byte>& /*bytes*/) const {}
     virtual void take_state(std::span<std::byte const>& /*bytes*/) {}
+
+    /// The state for another process that drives the same robots, and what goes on from it, after start(). Throws
+    /// ConfigError if there is something that only this process has, and ForeignState.
+    virtual void append_for_process(StateWriter& state);
+    virtual void take_from_process(StateReader& state);
+
+    /// Why the former cannot be called: at no time, or not between these two steps; empty: it can.
+    virtual std::string why_never_for_process() const { return why_not_saved(); }
+    virtual std::string why_not_now_for_process() const { return {}; }
 };
 
 /// All of a run. A program in C comes first, then others by their categories.

@@ -26,6 +26,9 @@ public:
     /// Writes world.light for the present time and the settings of the lamps.
     void update(World& world);
 
+    /// The next update() writes all of the map, which has become another one.
+    void forget_map() { is_first_update_ = true; }
+
     /// Where the lamps stand, and their beams, at the last update.
     std::vector<LampMark> marks() const;
 

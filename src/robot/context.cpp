@@ -33,6 +33,9 @@ void RunServices::warn_first(WarningKind const& kind, std::string const& text) {
 }
 
 void RunServices::print_line(World const& world, std::uint32_t robot, std::string_view line) {
+    if (are_lines_hidden) {
+        return;
+    }
     robot_log().info("[ROBOT #{}] [PRINTF] {}", robot == kNone ? std::uint16_t{0} : id_on_air(world.robots.id[robot]),
                      line);
     if (printed_lines != nullptr) {

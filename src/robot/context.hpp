@@ -50,6 +50,7 @@ struct RunServices {
     std::vector<WarningKind> warned;                // of warn_once
     WorldEdit edit{};
     Controllers* controllers = nullptr;
+    bool are_lines_hidden = false;          // of robots: they were printed before
     bool gave_user_data = false;            // of any robot, to callbacks of the run
     PrintedLines* printed_lines = nullptr;  // gets the lines of robots; null: they are not kept
 

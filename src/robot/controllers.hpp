@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/state_bytes.hpp"
 #include "brain/brain.hpp"
 #include "process/fibers.hpp"
 #include "process/program_image.hpp"
@@ -174,10 +175,25 @@ public:
     void restore(Saved const& saved);
     std::string why_not_saved() const;
 
+    /// Why it cannot be saved for another process, with append_state(), at any time; empty: it can. Then, it can where
+    /// why_not_saved() is empty and no robot is_waiting_in_middle().
+    std::string why_never_portable() const;
+    std::string why_state_is_elsewhere() const;
+    bool is_waiting_in_middle() const;
+
+    /// Appends the state for another process of the same program. Throws ConfigError for a program that keeps
+    /// addresses of memory that only this process has.
+    void append_state(StateWriter& state);
+
+    /// Goes on from there, after start(). Throws ForeignState.
+    void take_state(StateReader& state);
+
     /// Bytes of one robot's user data.
     std::size_t user_data_bytes() const { return image_.user_data_bytes; }
 
 private:
+    std::vector<std::span<std::byte>> portable_variables() const;
+    std::string name_at(std::byte const* place) const;
     void allocate_user_data();
     void draw_seeds(std::uint64_t seed);
     void count_time();

@@ -28,11 +28,22 @@ public:
     /// Puts the values of an object into its row. Cells without a value stay as they are.
     void fill(std::uint32_t object, std::span<CellValue> row) const;
 
+    /// See state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.columns_);
+    }
+
 private:
     /// A monostate: no value.
     struct Column {
         CellValue of_all;
         std::vector<CellValue> of_object;  // empty, or one for each object
+
+        template <class Self, class State>
+        static void visit_state(Self& self, State& state) {
+            state(self.of_all, self.of_object);
+        }
     };
 
     Column& at(std::size_t column);

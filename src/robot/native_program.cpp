@@ -48,6 +48,17 @@ void NativeProgram::restore(SavedBrain const& saved) {
     controllers_.restore(static_cast<SavedProgram const&>(saved).controllers);
 }
 
+std::string NativeProgram::why_never_for_process() const {
+    std::string const reason = controllers_.why_never_portable();
+    return reason.empty() ? controllers_.why_state_is_elsewhere() : reason;
+}
+
+std::string NativeProgram::why_not_now_for_process() const {
+    return controllers_.is_waiting_in_middle()
+               ? "a robot waits in the middle of its program, on a stack that only this process has"
+               : "";
+}
+
 void NativeProgram::share_steps(bool shares_nothing) {
     if (workers_.size() == 1) {
         return;

@@ -39,6 +39,10 @@ public:
     std::unique_ptr<SavedBrain> save() override;
     void restore(SavedBrain const& saved) override;
     std::string why_not_saved() const override { return controllers_.why_not_saved(); }
+    void append_for_process(StateWriter& state) override { controllers_.append_state(state); }
+    void take_from_process(StateReader& state) override { controllers_.take_state(state); }
+    std::string why_never_for_process() const override;
+    std::string why_not_now_for_process() const override;
 
 private:
     bool succeeds(std::optional<UserFailure> failure);

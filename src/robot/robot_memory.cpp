@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -353,6 +354,21 @@ void RobotMemory::repeat_common_changes() {
     }
 }
 
+std::size_t RobotMemory::offset_of(std::byte const* place) const {
+    auto const found = std::ranges::find_if(
+        blocks_, [place](Block const& block) { return place >= block.place && place < block.place + block.bytes; });
+    assert(found != blocks_.end());
+    return static_cast<std::size_t>(found - blocks_.begin()) * kBlockBytes +
+           static_cast<std::size_t>(place - found->place);
+}
+
+bool RobotMemory::fits(Saved const& saved) const {
+    auto const is_block = [this](std::uint32_t block) { return block < blocks_.size(); };
+    return saved.same.size() == first_.size() && saved.other.size() == first_.size() &&
+           saved.copies.size() == robots_ * saved.different.size() * kBlockBytes &&
+           std::ranges::all_of(saved.different, is_block);
+}
+
 RobotMemory::Saved RobotMemory::save_all() {
     load(kNone);
     Saved saved{.same = same_, .other = other_, .different = different_, .copies = {}, .changed = changed_};
@@ -370,6 +386,10 @@ void RobotMemory::restore_all(Saved const& saved) {
     changed_ = saved.changed;
     for (std::uint32_t const block : different_) {
         blocks_[block].slot = kSame;
+    }
+    if (saved.different.size() > capacity_) {  // saved by another process
+        different_.clear();
+        make_room(static_cast<std::uint32_t>(saved.different.size()));
     }
     different_ = saved.different;
     for (std::uint32_t own_slot = 0; own_slot < different_.size(); ++own_slot) {

@@ -17,6 +17,8 @@ namespace pogosim {
 
 class RobotMemory {
 public:
+    static constexpr std::size_t kBlockBytes = 64;
+
     struct ChangedByte {
         std::byte* place = nullptr;  // in the program
         std::byte value{};
@@ -64,13 +66,21 @@ public:
     Saved save_all();
     void restore_all(Saved const& saved);
 
+    /// Where a byte of Saved::same or Saved::other is in the program.
+    std::byte* place_of(std::size_t offset) const { return blocks_[offset / kBlockBytes].place + offset % kBlockBytes; }
+
+    /// The reverse, of a place in one of the blocks.
+    std::size_t offset_of(std::byte const* place) const;
+
+    /// Whether this memory can have such a state. One that another process has written may be of another program.
+    bool fits(Saved const& saved) const;
+
     /// Bytes of one copy.
     std::size_t bytes() const { return first_.size(); }
     /// Number of blocks that are copied.
     std::size_t copied_bytes() const { return different_.size() * kBlockBytes; }
 
 private:
-    static constexpr std::size_t kBlockBytes = 64;
     static constexpr std::uint32_t kSame = UINT32_MAX;
 
     struct Block {

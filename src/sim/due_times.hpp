@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/state_bytes.hpp"
 #include "config/scenario.hpp"
 #include "world/world.hpp"
 
@@ -52,6 +53,12 @@ public:
         return now_s;
     }
 
+    /// See state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.began_s_, self.last_s_);
+    }
+
 private:
     float period_s_;
     float began_s_ = 0.0F;  // of the next step
@@ -72,6 +79,25 @@ public:
             return original_->due(world);
         }
         return multiples_.reached(world.time_s()) > 0 ? std::optional(world.time_s()) : std::nullopt;
+    }
+
+    void append_state(StateWriter& state) const {
+        state(original_.has_value());
+        if (original_) {
+            state(*original_);
+        }
+    }
+
+    /// Goes on behind the rows of the run that was saved; the period may be another one. Throws ForeignState.
+    void take_state(StateReader& state, World const& world) {
+        bool was_original = false;
+        state(was_original);
+        if (was_original) {
+            OriginalRowTimes saved = original_.value_or(OriginalRowTimes(0.0));
+            state(saved);
+            original_ = original_ ? std::optional(saved) : std::nullopt;
+        }
+        multiples_.reached(world.time_s());
     }
 
 private:

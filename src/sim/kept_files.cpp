@@ -5,6 +5,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/error.hpp"
 #include "base/locked_file.hpp"
 #include "record/paths_beside.hpp"
 #include "render/frame_names.hpp"
@@ -172,6 +173,22 @@ std::vector<KeptFile> keep_earlier_files(Scenario const& scenario, std::string c
     Frames const frames = frames_of(scenario);
     if (auto const name = frames.files.empty() ? std::nullopt : keep_frames(frames)) {
         files.push_back({.path = frames.folder, .kept = *name, .moved = frames.files});
+    }
+    return files;
+}
+
+std::vector<KeptFile> keep_earlier_part(Scenario const& scenario, std::string const& film) {
+    std::vector<KeptFile> files;
+    for (fs::path const& path : single_files(scenario, film)) {
+        auto const name = keep_file(path);
+        if (!name) {
+            give_back(files);
+            throw OutputError(fmt::format(
+                "--from-state: '{}' of the earlier part cannot be renamed, and would be lost: another run is "
+                "writing it, or this folder cannot be changed",
+                path.string()));
+        }
+        files.push_back({.path = path, .kept = *name});
     }
     return files;
 }

@@ -26,6 +26,10 @@ std::vector<KeptFile> earlier_files(Scenario const& scenario, std::string const&
 /// that were renamed, with the names that they have got.
 std::vector<KeptFile> keep_earlier_files(Scenario const& scenario, std::string const& film);
 
+/// The same for a run that goes on from a state, which adds its frames to those that are there. Throws OutputError if a
+/// file cannot be renamed: rows of the earlier part would be lost.
+std::vector<KeptFile> keep_earlier_part(Scenario const& scenario, std::string const& film);
+
 /// Gives kept files their old names again, where no new file has them: for a run that did not start.
 void give_back(std::vector<KeptFile> const& files);
 

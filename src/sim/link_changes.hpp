@@ -21,6 +21,12 @@ public:
     /// What follow() has noted since its first call, as JSON. Empty: nothing.
     std::string changes(World const& world) const;
 
+    /// See state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.has_begun_, self.initial_count_, self.made_s_, self.cut_, self.is_cut_);
+    }
+
 private:
     struct Cut {
         std::size_t link = 0;
@@ -43,6 +49,12 @@ public:
 
     /// After it: what has been cut in it has broken. Logs the first link of each category that does.
     void tell(World const& world);
+
+    /// See state_bytes.hpp.
+    template <class Self, class State>
+    static void visit_state(Self& self, State& state) {
+        state(self.changes_, self.is_cut_, self.has_broken_);
+    }
 
 private:
     std::uint32_t changes_ = 0;     // World::link_changes when links were last looked at

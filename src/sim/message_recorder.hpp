@@ -22,6 +22,10 @@ public:
     bool is_open() const { return log_ != nullptr; }
     bool is_complete() const { return is_complete_; }
 
+    /// Messages recorded so far, from whose number the next ones are counted.
+    std::int64_t count() const { return messages_; }
+    void go_on_from(std::int64_t count) { messages_ = count; }
+
     /// What the next step fills; empty before.
     DeliveryLog& deliveries() { return deliveries_; }
 
@@ -39,7 +43,7 @@ private:
     LockedFile reserved_;  // until there is a log
     std::unique_ptr<MessageLog> log_;
     DeliveryLog deliveries_;
-    std::int64_t messages_ = 0;  // recorded so far
+    std::int64_t messages_ = 0;  // recorded so far, also by the run that was saved
     bool is_complete_ = false;
 };
 

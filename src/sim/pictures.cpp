@@ -250,6 +250,14 @@ void Pictures::record_if_due() {
     writer_->add({.snapshot = taker_.take(parts_), .frame = std::move(frame), .film_pictures = film_pictures});
 }
 
+void Pictures::go_on() {
+    if (makes_frames(scenario_) && scenario_.view.delete_old_files) {
+        lock_->share_folder();
+    }
+    frame_times_.reached(world_.time_s());
+    film_times_.reached(world_.time_s());
+}
+
 void Pictures::delete_old_frames() const {
     std::optional<std::filesystem::path> const folder = names_.folder();
     if (!folder) {

@@ -36,6 +36,9 @@ public:
     /// start, if old frames cannot be deleted.
     void record_if_due();
 
+    /// The run goes on from the present time: pictures until then were taken before, and stay.
+    void go_on();
+
     /// Waits until all pictures are written, and logs an error if some could not be. False then. When a thread that
     /// draws has crashed, nothing waits for it: pictures may be missing.
     bool finish();

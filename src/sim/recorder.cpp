@@ -338,6 +338,20 @@ void Recorder::close() {
     }
 }
 
+void Recorder::append_state(StateWriter& state) const {
+    state(links_, messages_ ? messages_->count() : std::int64_t{0});
+    row_times_.append_state(state);
+}
+
+void Recorder::take_state(StateReader& state) {
+    std::int64_t messages = 0;
+    state(links_, messages);
+    row_times_.take_state(state, world_);
+    if (messages_) {
+        messages_->go_on_from(messages);
+    }
+}
+
 std::optional<std::int64_t> Recorder::row_count() const {
     return data_file_ ? std::optional(data_file_->row_count()) : std::nullopt;
 }

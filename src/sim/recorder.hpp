@@ -68,6 +68,12 @@ public:
         messages_.reset();
     }
 
+    /// What the rows and messages of later steps depend on, see state_bytes.hpp.
+    void append_state(StateWriter& state) const;
+
+    /// Goes on in this world behind the rows that a run had before. Throws ForeignState.
+    void take_state(StateReader& state);
+
     /// Rows of the data file so far; none if there is no data file.
     std::optional<std::int64_t> row_count() const;
 

@@ -16,6 +16,7 @@
 #include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/rounded_time.hpp"
 #include "config/places.hpp"
 #include "device/clock.hpp"
 #include "device/switched_off.hpp"
@@ -117,6 +118,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
         return free_places().is_free(object, place_mm);
     };
     services_.edit.update_light = [this] { lighting_.update(world_); };
+    check_states();
 }
 
 Simulation::~Simulation() = default;
@@ -236,6 +238,10 @@ ExitCode Simulation::conclude(Outcome const& outcome) {
     if (interrupted()) {
         log().warn("interrupted at t = {:.4f} s{}", world_.time_s(), note_of_files());
     }
+    if (!lost_state_.empty()) {
+        log().error("--save-state: '{}' was not written: {}", escaped(options_.save_state), lost_state_);
+        return ExitCode::usage;
+    }
     if (!all_pictures_written) {
         return ExitCode::usage;
     }
@@ -281,6 +287,9 @@ std::optional<UserFailure> Simulation::run_steps() {
             }
         }
         failure = step();
+        if (!failure) {
+            save_state_if_due();
+        }
         if (options_.hash_period_steps > 0 && world_.step % options_.hash_period_steps == 0) {
             log().info("state after step {}: {:016x}", world_.step, hash());
         }
@@ -290,6 +299,9 @@ std::optional<UserFailure> Simulation::run_steps() {
         progress.show(world_.step);
     }
     progress.finish(world_.step);
+    if (!failure) {
+        save_state_at_end();
+    }
     return failure ? failure : end_programs();
 }
 
@@ -325,10 +337,11 @@ std::string Simulation::summary(double wall_s) const {
     std::string const record =
         rows ? fmt::format("{} in '{}'", counted(*rows, "row"), escaped(scenario_.output.data_filename))
              : "no data file (enable_data_logging: false)";
-    double const times_real = world_.time_s() / wall_s;
+    double const simulated_s = world_.time_s() - began_s_;
+    double const times_real = simulated_s / wall_s;
     std::string const speed =
         times_real < 1000.0 ? fmt::format("{:.3g}", times_real) : fmt::format("{:.0f}", times_real);
-    return fmt::format("{:.9g} s of {} simulated in {:.2f} s, {} x real time; {}", world_.time_s(),
+    return fmt::format("{:.9g} s of {} simulated in {:.2f} s, {} x real time; {}", simulated_s,
                        counted(count_of_robots(world_), "robot"), wall_s, speed, record);
 }
 
@@ -347,6 +360,7 @@ std::optional<UserFailure> Simulation::start() {
                 counted(world_.robots.size(), "robot"), controllers_.user_data_bytes(), step_count(),
                 world_.time_step_s, physics_engine_behind(scenario_.physics_engine), workers_.size());
     lighting_.update(world_);
+    services_.are_lines_hidden = options_.from_state != nullptr;
     bool const is_own = scenario_.robot_memory == RobotMemoryKind::automatic
                             ? controllers_.image().is_for_sdk
                             : scenario_.robot_memory == RobotMemoryKind::own;
@@ -364,8 +378,13 @@ std::optional<UserFailure> Simulation::start() {
     check_motion(scenario_, physics_->motion_limits(), world_.time_step_s);
     warn_of_ambiguous_rows(scenario_, world_);
     warn_of_rounded_speeds(scenario_, world_);
+    check_saving();
     if (auto failure = recorder_.open()) {
         return failure;
+    }
+    if (options_.from_state) {
+        go_on_from(*options_.from_state);
+        return std::nullopt;
     }
     auto failure = recorder_.record_if_due();
     if (pictures_) {
@@ -578,6 +597,9 @@ bool Simulation::finish() {
     Thread const thread(*this);
     if (std::string const touched = touches_.text(); !touched.empty()) {
         recorder_.add_metadata("touched", touched);
+    }
+    if (began_s_ > 0.0) {
+        recorder_.add_metadata("continued_from_s", fmt::format("{}", rounded_to_ns(began_s_)));
     }
     recorder_.close();  // first: the data matter most
     return !pictures_ || pictures_->finish();

@@ -35,6 +35,7 @@
 #include "sim/saved_columns.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/stage_clock.hpp"
+#include "sim/state_file.hpp"
 #include "sim/state_hash.hpp"
 #include "sim/touches.hpp"
 #include "view/messages.hpp"
@@ -61,9 +62,12 @@ struct RunOptions {
     std::optional<int> gdb_port{};                   // at which gdb looks at a robot's firmware; absent: it does not
     std::optional<std::uint32_t> gdb_robot{};        // id; absent: the first one that runs firmware
     bool window = false;
-    bool close_at_end = false;           // else the window stays open when the simulated time is over
-    std::string program_name{};          // for the window's title
-    std::optional<Restart> restarted{};  // by the user, in the window of the run before
+    bool close_at_end = false;                       // else the window stays open when the simulated time is over
+    std::string program_name{};                      // for the window's title
+    std::string save_state{};                        // file that gets the state; empty: none
+    std::optional<double> save_state_at_s{};         // absent: at the end of the run
+    std::shared_ptr<SavedState const> from_state{};  // from which the run goes on; null: it begins anew
+    std::optional<Restart> restarted{};              // by the user, in the window of the run before
     std::function<RestartCheck()> check_restart = [] { return RestartCheck{}; };  // see WindowSetup
 };
 
@@ -164,6 +168,13 @@ public:
     /// Goes on from a state of this run, as it did then. Arrays of the world stay where they are.
     void restore(SavedRun const& saved);
 
+    /// The state for another process, to go on from it there. Throws ConfigError, see Brain::append_for_process().
+    SavedState state_for_process();
+
+    /// Why there is no such state in this run; and why not between these two steps. Empty: there is.
+    std::string why_never_for_process() const;
+    std::string why_not_now_for_process() const;
+
     /// Brings the file of a run that goes on up to date. Throws OutputError.
     void save_now();
 
@@ -230,6 +241,13 @@ private:
     };
 
     std::optional<UserFailure> run_steps();
+    void check_states();
+    void check_saving();
+    SavedState present_state();
+    void go_on_from(SavedState const& saved);
+    void save_state_if_due();
+    void save_state_at_end();
+    void write_state();
     std::optional<UserFailure> call_brains(bool (Brain::*part)());
     void make_observer();
     FirmwareServices firmware_services();
@@ -272,6 +290,10 @@ private:
     Touches touches_;
     mutable std::optional<ObservedMotions> observed_motions_;  // from the first look at them on
     std::unique_ptr<WindowDriver> window_;                     // null without a window
+    std::unique_ptr<StateOutput> state_output_;                // null: no state is saved, or it was
+    bool is_save_late_ = false;                                // the state is due, and a robot waits
+    std::string lost_state_{};                                 // why it could not be saved
+    double began_s_ = 0.0;                                     // when this process took the run over
     bool leaves_archive_ = false;                              // of flash memory as it is
     bool is_complete_ = false;                                 // it came to its end, and all is written
 };

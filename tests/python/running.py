@@ -113,10 +113,12 @@ def compile_text(folder: Path, text: str, name: str = "main.c", **options: Any) 
     return compile_program(folder / "prog", source, **options)
 
 
-def start(program: Path, folder: Path, settings: Settings | None = None) -> subprocess.Popen[str]:
+def start(
+    program: Path, folder: Path, settings: Settings | None = None, arguments: Sequence[str] = ()
+) -> subprocess.Popen[str]:
     """Start a program headless in a folder, to be disturbed while it runs."""
     write_scene(folder, settings or {})
-    command = [str(program), "-c", "scene.yaml", "-g"]
+    command = [str(program), "-c", "scene.yaml", "-g", *arguments]
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 

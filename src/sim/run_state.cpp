@@ -1,0 +1,185 @@
+// --save-state and --from-state: the state of a run for another process.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+#include "base/log.hpp"
+#include "base/rounded_time.hpp"
+#include "physics/physics_engine.hpp"
+#include "sim/interrupt.hpp"
+#include "sim/simulation.hpp"
+#include "sim/state_file.hpp"
+#include "world/saved_world.hpp"
+
+namespace pogosim {
+
+std::string Simulation::why_never_for_process() const {
+    if (observer_) {
+        return "its firmware is profiled, or looked at by gdb";
+    }
+    if (!physics_->copy()) {
+        return fmt::format("its physics engine ({}) cannot be saved", physics_engine_behind(scenario_.physics_engine));
+    }
+    for (auto const& brain : brains_) {
+        if (std::string reason = brain->why_never_for_process(); !reason.empty()) {
+            return reason;
+        }
+    }
+    return "";
+}
+
+std::string Simulation::why_not_now_for_process() const {
+    for (auto const& brain : brains_) {
+        if (std::string reason = brain->why_not_now_for_process(); !reason.empty()) {
+            return reason;
+        }
+    }
+    return "";
+}
+
+SavedState Simulation::state_for_process() {
+    Thread const thread(*this);
+    return present_state();
+}
+
+SavedState Simulation::present_state() {
+    StateWriter state;
+    append_world(world_, state);
+    physics_->append_state(state);
+    state(broken_links_, touches_);
+    for (auto const& brain : brains_) {
+        brain->append_for_process(state);
+    }
+    recorder_.append_state(state);
+    return {.identity = identity_of(controllers_.image(), scenario_, world_),
+            .seed = seed_,
+            .time_s = world_.time_s(),
+            .hash = hash(),
+            .has_ended = services_.stop_requested,
+            .state = state.bytes()};
+}
+
+/// What is known before any robot runs.
+void Simulation::check_states() {
+    if (options_.from_state) {
+        SavedState const& saved = *options_.from_state;
+        check_identity(saved, identity_of(controllers_.image(), scenario_, world_));
+        std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
+        if (saved.has_ended) {
+            throw ConfigError(time + ", when its program ended the run: there is nothing to go on with");
+        }
+        if (saved.time_s >= scenario_.simulation_time_s) {
+            throw ConfigError(fmt::format("{}, and simulation_time is {} s: set a longer one (--set simulation_time=)",
+                                          time, scenario_.simulation_time_s));
+        }
+        if (options_.save_state_at_s && *options_.save_state_at_s < saved.time_s) {
+            throw ConfigError(fmt::format("{}: --at {} is before that", time, *options_.save_state_at_s));
+        }
+    }
+    if (options_.save_state.empty()) {
+        return;
+    }
+    if (options_.save_state_at_s && *options_.save_state_at_s > scenario_.simulation_time_s) {
+        throw ConfigError(fmt::format("--at {}: the run ends at {} s (simulation_time)", *options_.save_state_at_s,
+                                      scenario_.simulation_time_s));
+    }
+    if (std::string const reason = why_never_for_process(); !reason.empty()) {
+        throw ConfigError(fmt::format("--save-state: the state of this run cannot be saved: {}", reason));
+    }
+    state_output_ = std::make_unique<StateOutput>(options_.save_state);
+}
+
+/// After the start of the programs: what they keep can be known by now, before the end of a long run.
+void Simulation::check_saving() {
+    if (state_output_ && why_not_now_for_process().empty()) {
+        try {
+            present_state();
+        } catch (ConfigError const& error) {
+            throw ConfigError(fmt::format("--save-state: the state of this run cannot be saved: {}", error.what()));
+        }
+    }
+}
+
+/// After start(): all of the run becomes what it was, but for what belongs to this process.
+void Simulation::go_on_from(SavedState const& saved) {
+    try {
+        StateReader state(saved.state);
+        take_world(world_, state);
+        physics_->take_state(state);
+        state(broken_links_, touches_);
+        for (auto const& brain : brains_) {
+            brain->take_from_process(state);
+        }
+        recorder_.take_state(state);
+    } catch (ForeignState const& foreign) {
+        throw ConfigError(
+            fmt::format("--from-state: '{}' does not fit this run: {}", saved.file.string(), foreign.what()));
+    }
+    // The map as it was, also where a lamp has moved on since.
+    std::vector<std::int16_t> const levels = world_.light.level;
+    lighting_.forget_map();
+    lighting_.update(world_);
+    world_.light.level = levels;
+    lighting_.forget_map();
+    services_.are_lines_hidden = false;
+    services_.stop_requested = false;
+    began_s_ = world_.time_s();
+    if (observed_motions_) {
+        observed_motions_->update(world_);
+    }
+    if (pictures_) {
+        pictures_->go_on();
+    }
+    if (hash() != saved.hash) {
+        throw ConfigError(
+            fmt::format("--from-state: '{}' does not give the run that it is of: the state of t = {} s "
+                        "has the hash {:016x}, and what came of it {:016x}",
+                        saved.file.string(), saved.time_s, saved.hash, hash()));
+    }
+    log().info("goes on from '{}' at t = {} s", escaped(saved.file.string()), rounded_to_ns(began_s_));
+}
+
+/// Throws OutputError, and ConfigError.
+void Simulation::write_state() {
+    try {
+        state_output_->write(state_for_process());
+    } catch (ConfigError const& error) {
+        lost_state_ = error.what();
+        return;
+    }
+    log().info("the state of t = {} s is in '{}': go on with --from-state", rounded_to_ns(world_.time_s()),
+               escaped(options_.save_state));
+    state_output_.reset();
+}
+
+/// Where a robot waits in the middle of its program, a later step is taken.
+void Simulation::save_state_if_due() {
+    if (!state_output_ || !options_.save_state_at_s ||
+        world_.time_s() < *options_.save_state_at_s - kWholeTolerance * world_.time_step_s) {
+        return;
+    }
+    if (why_not_now_for_process().empty()) {
+        write_state();
+    } else if (!std::exchange(is_save_late_, true)) {
+        log().info("--save-state: at t = {} s, {}: the state is that of the first step without",
+                   rounded_to_ns(world_.time_s()), why_not_now_for_process());
+    }
+}
+
+void Simulation::save_state_at_end() {
+    if (!state_output_ || restart()) {
+        return;
+    }
+    if (std::string const reason = why_not_now_for_process(); !reason.empty()) {
+        lost_state_ = fmt::format("at t = {} s, {}", rounded_to_ns(world_.time_s()), reason);
+    } else {
+        write_state();
+    }
+}
+
+}  // namespace pogosim

@@ -1,0 +1,300 @@
+#include "sim/state_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/escaped.hpp"
+#include "base/new_file.hpp"
+#include "config/configuration_text.hpp"
+#include "physics/physics_engine.hpp"
+#include "pogosim/version.h"
+#include "process/loaded_modules.hpp"
+#include "sim/object_facts.hpp"
+
+namespace pogosim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSignature{"PGSTATE\0", 8};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeadBytes = 8 + sizeof(std::uint32_t) + sizeof(std::uint64_t);
+constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325ULL;
+
+std::uint64_t fnv_1a(std::string_view bytes, std::uint64_t hash = kFnvBasis) {
+    for (char const byte : bytes) {
+        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+    }
+    return hash;
+}
+
+/// Keys that decide for how long a run goes on, and what it writes and shows: a state goes on with others.
+constexpr std::array<std::string_view, 27> kFreeKeys{"simulation_time",
+                                                     "seed",
+                                                     "user_code_timeout",
+                                                     "enable_data_logging",
+                                                     "data_filename",
+                                                     "save_data_period",
+                                                     "save_data_times",
+                                                     "data_logger_fields",
+                                                     "data_logger_category",
+                                                     "data_logger_flush_row_count",
+                                                     "data_logger_led",
+                                                     "message_log",
+                                                     "enable_console_logging",
+                                                     "console_filename",
+                                                     "log_format",
+                                                     "GUI",
+                                                     "GUI_speed_up",
+                                                     "window_width",
+                                                     "window_height",
+                                                     "mm_to_pixels",
+                                                     "save_video_period",
+                                                     "frames_name",
+                                                     "delete_old_files",
+                                                     "progress_bar",
+                                                     "batch_options",
+                                                     "optimization",
+                                                     "flash_state"};
+
+bool is_free(std::string_view key) {
+    return key.starts_with("show_") || std::ranges::find(kFreeKeys, key) != kFreeKeys.end();
+}
+
+/// The lines of the keys at the top of a YAML text, without those of free keys.
+std::string without_free_keys(std::string_view text) {
+    std::string kept;
+    bool is_kept = true;
+    while (!text.empty()) {
+        std::size_t const end = std::min(text.find('\n'), text.size() - 1) + 1;
+        std::string_view const line = text.substr(0, end);
+        text.remove_prefix(end);
+        if (line.find_first_of(" -#\n") != 0) {
+            is_kept = !is_free(line.substr(0, line.find(':')));
+        }
+        if (is_kept) {
+            kept += line;
+        }
+    }
+    return kept;
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+    std::vector<std::string> lines;
+    while (!text.empty()) {
+        std::size_t const end = std::min(text.find('\n'), text.size());
+        lines.emplace_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+}
+
+std::size_t indent_of(std::string const& line) {
+    return std::min(line.find_first_not_of(' '), line.size());
+}
+
+/// "objects: robots: nb: 30", from the keys above a line.
+std::string path_of(std::vector<std::string> const& lines, std::size_t at) {
+    if (at >= lines.size()) {
+        return "nothing more";
+    }
+    std::string path = lines[at].substr(indent_of(lines[at]));
+    std::size_t indent = indent_of(lines[at]);
+    for (std::size_t i = at; i-- > 0 && indent > 0;) {
+        if (indent_of(lines[i]) < indent) {
+            indent = indent_of(lines[i]);
+            path = lines[i].substr(indent) + ' ' + path;
+        }
+    }
+    return path;
+}
+
+[[noreturn]] void refuse(SavedState const& saved, std::string const& reason) {
+    throw ConfigError(fmt::format("--from-state: '{}' {}", saved.file.string(), reason));
+}
+
+std::string difference(std::string const& saved, std::string const& own) {
+    std::vector<std::string> const before = lines_of(saved);
+    std::vector<std::string> const now = lines_of(own);
+    auto const [one, other] = std::ranges::mismatch(before, now);
+    return fmt::format("'{}' then, and '{}' now", path_of(before, static_cast<std::size_t>(one - before.begin())),
+                       path_of(now, static_cast<std::size_t>(other - now.begin())));
+}
+
+std::string read_all(fs::path const& file) {
+    std::ifstream input(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(input), {}};
+}
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t at) {
+    T value{};
+    std::memcpy(&value, bytes.data() + at, sizeof(T));
+    return value;
+}
+
+template <class T>
+void put(std::string& bytes, T value) {
+    bytes.append(reinterpret_cast<char const*>(&value), sizeof(T));
+}
+
+/// Throws ForeignState.
+SavedState state_in(std::string_view bytes) {
+    if (!bytes.starts_with(kSignature)) {
+        throw ForeignState("is not the state of a run");
+    }
+    if (bytes.size() < kHeadBytes) {
+        throw ForeignState("is cut off");
+    }
+    if (auto const version = value_at<std::uint32_t>(bytes, kSignature.size()); version != kVersion) {
+        throw ForeignState(fmt::format("was written by another version of Pogosim: its format is {}, and this is {}",
+                                       version, kVersion));
+    }
+    auto const count = value_at<std::uint64_t>(bytes, kHeadBytes - sizeof(std::uint64_t));
+    std::size_t const rest = bytes.size() - kHeadBytes;
+    if (rest < sizeof(std::uint64_t) || count != rest - sizeof(std::uint64_t)) {
+        throw ForeignState(fmt::format("is cut off: it has {} bytes", bytes.size()));
+    }
+    if (fnv_1a(bytes.substr(0, kHeadBytes + count)) != value_at<std::uint64_t>(bytes, kHeadBytes + count)) {
+        throw ForeignState("is damaged: its checksum is not that of its bytes");
+    }
+    StateReader reader(std::as_bytes(std::span(bytes).subspan(kHeadBytes, count)));
+    SavedState saved;
+    reader(saved);
+    return saved;
+}
+
+}  // namespace
+
+RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world) {
+    RunIdentity identity;
+    identity.version = POGOSIM_VERSION_STRING;
+    std::vector<LoadedModule> const modules = loaded_modules();
+    if (LoadedModule const* const own = module_at(modules, reinterpret_cast<void const*>(&identity_of))) {
+        identity.build = own->build;
+    }
+    identity.program = fs::path(image.name).filename().string();
+    if (LoadedModule const* const own = module_at(modules, reinterpret_cast<void const*>(image.main))) {
+        identity.program_build = own->build;
+    }
+    RunValues const run{.time_step_s = scenario.time_step_s,
+                        .is_periodic = world.periodic,
+                        .physics_engine = physics_engine_behind(scenario.physics_engine)};
+    identity.configuration = without_free_keys(configuration_text(scenario, run).resolved);
+    identity.files = fnv_1a(object_facts(scenario, world));
+    for (Polygon const& polygon : world.arena.polygons) {
+        identity.files = fnv_1a({reinterpret_cast<char const*>(polygon.data()), polygon.size() * sizeof(polygon[0])},
+                                identity.files);
+    }
+    for (ObjectFile const& file : scenario.object_files) {
+        identity.files = fnv_1a(read_all(file.path), identity.files);
+    }
+    return identity;
+}
+
+SavedState read_state(fs::path const& file) {
+    SavedState unread{.file = file};
+    std::error_code error;
+    if (!fs::exists(file, error)) {
+        refuse(unread, fmt::format("does not exist in '{}'", fs::current_path(error).string()));
+    }
+    if (!fs::is_regular_file(file, error)) {
+        refuse(unread, "is not a file");
+    }
+    std::ifstream const input(file, std::ios::binary);
+    if (!input) {
+        refuse(unread, fmt::format("cannot be read: {}", std::generic_category().message(errno)));
+    }
+    std::string const bytes = read_all(file);
+    if (bytes.empty()) {
+        refuse(unread, "is empty: the run that was to write it has not");
+    }
+    try {
+        SavedState saved = state_in(bytes);
+        saved.file = file;
+        return saved;
+    } catch (ForeignState const& foreign) {
+        refuse(unread, foreign.what());
+    }
+}
+
+void check_identity(SavedState const& saved, RunIdentity const& identity) {
+    RunIdentity const& before = saved.identity;
+    if (before.version != identity.version) {
+        refuse(saved, fmt::format("is of Pogosim {}, and this is {}: go on with that version", before.version,
+                                  identity.version));
+    }
+    if (before.build != identity.build) {
+        refuse(saved, "is of another build of this version of Pogosim: go on with that one");
+    }
+    if (before.program_build != identity.program_build) {
+        refuse(saved, before.program != identity.program
+                          ? fmt::format("is of the program '{}', and this is '{}'", before.program, identity.program)
+                          : fmt::format("is of another build of '{}': go on with that executable", before.program));
+    }
+    if (before.configuration != identity.configuration) {
+        refuse(saved, fmt::format("is of another configuration: {}. Only simulation_time, seed and what is written "
+                                  "and shown may differ",
+                                  difference(before.configuration, identity.configuration)));
+    }
+    if (before.files != identity.files) {
+        refuse(saved,
+               "is of a run whose arena, robot models, firmware or scripts were others: a file that the "
+               "configuration names has changed");
+    }
+}
+
+StateOutput::StateOutput(fs::path const& file) : name_(file) {
+    try {
+        std::error_code error;
+        if (fs::is_regular_file(file, error) && fs::file_size(file, error) > 0 &&
+            !read_all(file).starts_with(kSignature)) {
+            throw ConfigError(
+                fmt::format("--save-state: '{}' is not the state of a run, and would be lost; choose another file, or "
+                            "remove it",
+                            file.string()));
+        }
+        if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+            throw FileError("it is not a file");
+        }
+        check_is_name_of_file(file);
+        fs::path const path = real_path(file);
+        make_parent_folder(path);
+        reserved_ = LockedFile(path);
+        NewFile const trial(path);  // a folder in which nothing can be written is known before the run
+    } catch (FileError const& failure) {
+        throw OutputError(fmt::format("--save-state: cannot write '{}': {}", file.string(), failure.what()));
+    }
+}
+
+void StateOutput::write(SavedState const& saved) {
+    StateWriter state;
+    state(saved);
+    std::string bytes(kSignature);
+    put(bytes, kVersion);
+    put(bytes, std::uint64_t{state.bytes().size()});
+    bytes.append(reinterpret_cast<char const*>(state.bytes().data()), state.bytes().size());
+    put(bytes, fnv_1a(bytes));
+    try {
+        NewFile file(reserved_.path());
+        write_all(file.descriptor(), bytes);
+        file.replace(reserved_);
+        reserved_.keep();
+    } catch (FileError const& failure) {
+        throw OutputError(
+            fmt::format("--save-state: cannot write '{}': {}. It is as before", name_.string(), failure.what()));
+    }
+}
+
+}  // namespace pogosim
