@@ -92,6 +92,7 @@ public:
     /// Returns whether there is a thread that looks.
     bool begin(CrashHandlerState& handler) {
         std::lock_guard const lock(mutex_);
+        ++begun_;
         watched_.push_back({.handler = &handler});
         if (!has_thread_) {
             has_thread_ = true;
@@ -125,11 +126,12 @@ private:
     void serve() {
         std::unique_lock lock(mutex_);
         for (int looks_in_vain = 0; looks_in_vain <= kIdleLooks;) {
+            unsigned long const begun = begun_;
             lock.unlock();
             std::this_thread::sleep_for(kLookPeriod);
             let_go_of_signals();
             lock.lock();
-            looks_in_vain = watched_.empty() ? looks_in_vain + 1 : 0;
+            looks_in_vain = watched_.empty() && begun == begun_ ? looks_in_vain + 1 : 0;
             for (Watched& watched : watched_) {
                 look(watched);
             }
@@ -186,6 +188,7 @@ private:
 
     std::mutex mutex_;
     std::vector<Watched> watched_;
+    unsigned long begun_ = 0;  // runs, or their steps, that were watched: after each the thread stays for a while
     bool has_thread_ = false;
 };
 

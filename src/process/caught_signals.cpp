@@ -60,6 +60,11 @@ bool is_caught(int signal) {
     return caught(signal).handler != nullptr;
 }
 
+bool has_handler_before(int signal) {
+    auto* const before = caught(signal).before.sa_handler;
+    return is_caught(signal) && before != SIG_DFL && before != SIG_IGN;
+}
+
 void give_back_signal(int signal) {
     if (caught(signal).handler == nullptr) {
         return;
@@ -74,13 +79,16 @@ void give_back_signal(int signal) {
 
 void pass_on(int signal, siginfo_t* info, void* context) {
     struct sigaction const& before = caught(signal).before;
-    if (before.sa_handler == SIG_IGN) {
+    bool const is_alarm = signal == SIGALRM || signal == SIGPROF;
+    // A handler that took ours for the one before it, which was given back since, calls it none the less.
+    bool const is_stale = !is_caught(signal);
+    if (before.sa_handler == SIG_IGN || (is_stale && is_alarm)) {
         return;
     }
     void const* const frame = __builtin_frame_address(0);
-    if (before.sa_handler == SIG_DFL || comes_back(signal, frame)) {
+    if (before.sa_handler == SIG_DFL || is_stale || comes_back(signal, frame)) {
         std::signal(signal, SIG_DFL);
-        if (info->si_code <= 0) {  // sent: it does not come again by itself, as a crash does
+        if (is_alarm || info->si_code <= 0) {  // sent: it does not come again by itself, as a crash does
             std::raise(signal);
         }
         return;

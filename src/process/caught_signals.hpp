@@ -14,6 +14,9 @@ void catch_signal(int signal, int flags, SignalHandler handler);
 /// Whether that is so, as far as this process has been asked to.
 bool is_caught(int signal);
 
+/// Whether it is caught, and a function of the host handled it before.
+bool has_handler_before(int signal);
+
 /// Gives this signal back to the handler before, unless the program has taken it over since.
 void give_back_signal(int signal);
 

@@ -2,6 +2,7 @@
 // on a busy machine does not use up; and, once the run was asked to end, by wall-clock time (SIGALRM), which passes in
 // sleep(), too. After user code was left by force, SIGALRM watches only over the data file.
 #include <pthread.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -43,9 +44,16 @@ double thread_processor_time_s() {
 /// The run whose timer has sent this signal to this thread; null: it is not from one of them.
 CrashHandlerState* run_of(siginfo_t const& info) {
     CrashHandlerState* const handler = active_handler;
-    bool const is_run =
-        handler != nullptr && (info.si_code != SI_TIMER || info.si_value.sival_ptr == handler->timers);  // or hurry()
-    return is_run ? handler : nullptr;
+    if (handler == nullptr) {
+        return nullptr;
+    }
+#ifdef SI_TKILL
+    bool const is_of_hurry = info.si_code == SI_TKILL && info.si_pid == getpid();
+#else
+    bool const is_of_hurry = info.si_code != SI_TIMER;
+#endif
+    bool const is_of_timer = info.si_code == SI_TIMER && info.si_value.sival_ptr == handler->timers;
+    return is_of_hurry || is_of_timer ? handler : nullptr;  // else an alarm of the host, or a signal of another process
 }
 
 /// Passes on a signal that is for no run, unless a timer has sent it that goes on between the runs of this thread.
@@ -252,6 +260,10 @@ EndRequest const* end_request(CrashHandlerState const& handler) {
 void catch_watch_signals() {
     catch_signal(SIGALRM, SA_RESTART, on_look);
     catch_signal(SIGPROF, SA_RESTART, on_watch);
+}
+
+bool host_handles_watch_signals() {
+    return has_handler_before(SIGALRM) || has_handler_before(SIGPROF);
 }
 
 void give_back_watch_signals() {

@@ -561,6 +561,62 @@ def test_handlers_installed_between_steps_hold_and_crashes_of_robots_stay_errors
     assert done.stderr.count("Fatal Python error: Segmentation fault") == 1
 
 
+ALARMS = """
+import os, signal, sys, threading, time, pogosim
+settings = {'simulation_time': 1e7, 'save_data_period': -1}
+sim = pogosim.Simulation(sys.argv[1], sys.argv[2], set=settings)
+
+class Alarm(Exception):
+    pass
+
+def ring(*_):
+    raise Alarm
+
+signal.signal(signal.SIGALRM, ring)
+"""
+
+
+@pytest.mark.parametrize("steps", [1, 2000])
+def test_alarm_of_the_host_rings_while_steps_are_made(hosted: Path, scene: Path, steps: int) -> None:
+    code = (
+        f"{ALARMS}rung = 0\n"
+        "for _ in range(5):\n"
+        "    signal.setitimer(signal.ITIMER_REAL, 0.2)\n"
+        "    end_s = time.monotonic() + 30\n"
+        "    try:\n"
+        f"        while time.monotonic() < end_s: sim.step({steps})\n"
+        "    except Alarm:\n"
+        "        rung += 1\n"
+        "print(rung)\n"
+    )
+    command = [sys.executable, "-c", code, str(hosted), str(scene)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
+    assert (done.returncode, done.stdout) == (0, "5\n"), done.stderr
+
+
+def test_alarm_of_the_host_interrupts_what_waits_after_a_step(hosted: Path, scene: Path) -> None:
+    code = (
+        f"{ALARMS}into, out = os.pipe()\n"
+        "sim.step(1)\n"
+        "signal.setitimer(signal.ITIMER_REAL, 0.2)\n"
+        "threading.Timer(20, os.write, (out, b'x')).start()\n"
+        "try:\n    os.read(into, 1)\nexcept Alarm:\n    print('interrupted', flush=True)\n"
+        "os._exit(0)\n"
+    )
+    command = [sys.executable, "-c", code, str(hosted), str(scene)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (0, "interrupted\n"), done.stderr
+
+
+def test_alarm_without_a_handler_ends_the_process_as_elsewhere(hosted: Path, scene: Path) -> None:
+    code = (
+        f"{ALARMS}signal.signal(signal.SIGALRM, signal.SIG_DFL)\nsignal.setitimer(signal.ITIMER_REAL, 0.2)\nsim.run()\n"
+    )
+    command = [sys.executable, "-c", code, str(hosted), str(scene)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (-signal.SIGALRM, "")
+
+
 def test_many_runs_one_after_the_other_leave_nothing_behind(hosted: Path, scene: Path) -> None:
     def open_files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
