@@ -49,8 +49,8 @@ struct pogosim_run_options {
     int strict;    ///< not 0: unknown keys are errors
 };
 
-/// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Only those arrays of
-/// a brain that say so may be written.
+/// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Only those arrays
+/// of a brain that say so may be written.
 struct pogosim_array {
     void* data;
     char type[8];    ///< as of NumPy's array interface: "<f4", "|u1", "|V24" (user data)
@@ -92,10 +92,11 @@ int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 /// of its body; 2^32 - 1: none), "robots.led" (n, 5, 3), "robots.ticks", "robots.clock" (us; at least 2^62: switched
 /// off), "robots.messages_sent", "robots.messages_received", "robots.magnetometer" (n, 3), counts read last,
 /// "robots.magnetometer_samples" (n), how often it was read, "robots.user_data", zero for those that do not run the
-/// program. Light on the floor: "light" (rows, columns), sensor counts. Columns that the program has added to the data file, by robot, as set by data_set_value_* at the last save: "columns.NAME",
-/// and "columns_absent.NAME", true for robots that set no value or wrote no row; for them "columns.NAME" has NaN, 0 or
-/// false. A column of strings has the type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only
-/// until this thread asks for the next one.
+/// program. Light on the floor: "light" (rows, columns), sensor counts. Columns that the program has added to the data
+/// file, by robot, as set by data_set_value_* at the last save: "columns.NAME", and "columns_absent.NAME", true for
+/// robots that set no value or wrote no row; for them "columns.NAME" has NaN, 0 or false. A column of strings has the
+/// type "text": UTF-8, each ended by a zero, so many bytes; it stays in place only until this thread asks for the next
+/// one.
 int pogosim_run_array(pogosim_run const* run, char const* name, struct pogosim_array* array);
 
 /// An array of the robots of one category whose configuration says `brain: host`: the run's robots are driven by what

@@ -72,9 +72,9 @@ void HostBrain::set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorC
         set_signed_power(world_, robot, motor, power);
         std::int32_t const most = kFullMotorPower;
         if (power != 0 && !world_.spec_of(robot).model.has_motor(static_cast<int>(motor))) [[unlikely]] {
-            warn_once(TooMuch::motor,
-                      fmt::format("motors[{}, {}] is {}, but the robot's model has no such motor; it moves nothing",
-                                  robot - range_.first, motor, power));
+            warn_once(
+                TooMuch::motor,
+                fmt::format("motors[:, {}]: the robots' model has no such motor; its power moves nothing", motor));
         }
         if (power > most || power < -most) [[unlikely]] {
             warn_once(TooMuch::power,
@@ -109,7 +109,7 @@ void HostBrain::send(std::uint32_t robot) {
     auto const emitters = is_to_one ? static_cast<std::uint8_t>(all & 1U << face) : all;
     if (emitters == 0) [[unlikely]] {
         warn_once(TooMuch::face_of_model,
-                  fmt::format("send_face[{}] is {}, but the robot's model has no such face; nothing is sent", i, face));
+                  fmt::format("send_face: the robots' model has no face {}; nothing is sent", face));
         return;
     }
     auto const size = std::min(static_cast<std::size_t>(length), kMostPayloadBytes);

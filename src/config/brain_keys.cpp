@@ -119,16 +119,24 @@ bool drives(Entry const& entry) {
     return std::ranges::any_of(entry.motors, [](std::optional<int> const& power) { return power.has_value(); });
 }
 
-/// Entries that leave no trace: with nothing in them, or replaced at once by the next one.
-void warn_of_vain_entry(Place const& place, Entry const& entry, Entry const* before) {
+/// Whether an entry sets at once what another one of the same time has set.
+bool replaces(Entry const& entry, Entry const& before) {
+    bool const is_same_led = before.led && entry.led && before.led_id == entry.led_id;
+    return before.time_s == entry.time_s && ((drives(before) && drives(entry)) || is_same_led);
+}
+
+/// The last entry may leave no trace: with nothing in it, or in the place of an earlier one.
+void warn_of_vain_entry(Place const& place, std::vector<Entry> const& entries) {
     auto const warn = [&](std::string_view what) {
         log().warn("{}: {}: {}", place.node.where(), shown(place.path), what);
     };
-    if (!drives(entry) && !entry.led && entry.message.empty()) {
+    Entry const& entry = entries.back();
+    bool const is_empty = !drives(entry) && !entry.led && entry.message.empty();
+    if (is_empty && place.node.find("led_id") == nullptr) {
         warn("has a time and nothing else, so it does nothing; add `motors`, `led` or `message`");
-    } else if (before != nullptr && before->time_s == entry.time_s &&
-               ((drives(*before) && drives(entry)) || (before->led && entry.led && before->led_id == entry.led_id))) {
-        warn("replaces at once what the entry before it sets, which has the same time");
+    } else if (std::any_of(entries.begin(), entries.end() - 1,
+                           [&](Entry const& before) { return replaces(entry, before); })) {
+        warn("replaces at once what an entry before it sets, which has the same time");
     }
 }
 
@@ -150,7 +158,7 @@ ScriptSpec read_entries(Place const& place, Reading& reading, Node& values) {
                     "the entries of a script are in the order of their times; this one is earlier than "
                     "the one before");
         }
-        warn_of_vain_entry(reader.place(), script.entries[i], i > 0 ? &script.entries[i - 1] : nullptr);
+        warn_of_vain_entry(reader.place(), script.entries);
     }
     return script;
 }

@@ -273,8 +273,8 @@ void check_scripts(Scenario const& scenario) {
         } else if (double const last_s = script->entries.back().time_s;
                    last_s >= kFarBeyond * scenario.simulation_time_s) {
             log().warn(
-                "{}: objects.{}.brain: the script goes on until {} s, far beyond the end of the run (simulation_time: {}); "
-                "times are in s, not in ms",
+                "{}: objects.{}.brain: the script goes on until {} s, far beyond the end of the run (simulation_time: "
+                "{}); times are in s, not in ms",
                 object.line, shown(object.category), number_text(last_s), number_text(scenario.simulation_time_s));
         }
     }

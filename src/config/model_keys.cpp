@@ -227,18 +227,6 @@ struct NamedMotor {
 };
 constexpr std::array kNamedMotors{NamedMotor{"right", 0, 0}, NamedMotor{"left", 1, 1}, NamedMotor{"back", 2, 0}};
 
-struct WrittenMotors {};
-
-std::span<Key<WrittenMotors> const> named_motor_keys() {
-    using K = Key<WrittenMotors>;
-    static std::array const keys{
-        K{kNamedMotors[0].name, Elsewhere{kMotor}, any(), "", "The right motor."},
-        K{kNamedMotors[1].name, Elsewhere{kMotor}, any(), "", "The left motor."},
-        K{kNamedMotors[2].name, Elsewhere{kMotor}, any(), "", "The motor at the back."},
-    };
-    return keys;
-}
-
 /// The motors as shares of what all of them give together.
 void set_drives(std::vector<std::pair<std::uint8_t, WrittenMotor>> const& motors, RobotSpec& robot) {
     float linear_mm_s = 0.0F;
@@ -264,14 +252,17 @@ void refuse_unknown_motors(MapReader const& map) {
     std::ranges::transform(kNamedMotors, std::back_inserter(names),
                            [](NamedMotor const& motor) { return std::string(motor.name); });
     for (auto const& [name, value] : map.place().node.entries) {
+        Place const place{value, map.path_of(name)};
         if (std::ranges::find(names, name) == names.end()) {
-            fail_at({value, map.path_of(name)},
-                    fmt::format("expected {}{}", names_text(names), did_you_mean(shown(name), names)));
+            fail_at(place, fmt::format("expected {}{}", names_text(names), did_you_mean(shown(name), names)));
+        }
+        if (value.kind == Node::Kind::null) {
+            fail_at(place, fmt::format("expected {}, found nothing; remove a motor that is not there", kMotor));
         }
     }
 }
 
-/// Somebody who writes one number of one motor replaces the whole map, and robots that cannot turn look like a result.
+/// One number of one motor replaces the whole map, and robots that cannot turn look like a result.
 void warn_of_missing_speeds(MapReader const& map, bool is_any_linear, bool is_any_angular) {
     auto const warn = [&](std::string_view key, std::string_view what) {
         log().warn(
@@ -294,8 +285,6 @@ void read_motors(MapReader& reader, RobotSpec& robot) {
     std::vector<std::pair<std::uint8_t, WrittenMotor>> motors;
     reader.read_map("motors", kMotors, [&](MapReader& map) {
         refuse_unknown_motors(map);
-        WrittenMotors written;
-        map.read(named_motor_keys(), written);
         bool is_any_linear = false;
         bool is_any_angular = false;
         for (NamedMotor const& known : kNamedMotors) {

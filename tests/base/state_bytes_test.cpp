@@ -44,6 +44,11 @@ std::vector<std::byte> bytes_of(Outer const& outer) {
     return state.bytes();
 }
 
+/// Not inlined: gcc 12 would warn of the text of an optional that it takes for uninitialized.
+[[gnu::noinline]] void take(StateReader& state, Outer& into) {
+    state(into);
+}
+
 Outer const kFull{.value = -0.5,
                   .inner = {{.name = "a", .numbers = {1, 2, 65535}}, {}},
                   .other = std::string(300, 'x'),
@@ -55,7 +60,7 @@ TEST(StateBytes, GiveTheSameValuesAgain) {
         std::vector<std::byte> const bytes = bytes_of(outer);
         StateReader state(bytes);
         Outer read = kFull;
-        state(read);
+        take(state, read);
         EXPECT_EQ(read, outer);
         EXPECT_TRUE(state.rest().empty());
     }
@@ -66,7 +71,7 @@ TEST(StateBytes, ThatAreCutOffAnywhereAreForeign) {
     for (std::size_t size = 0; size < bytes.size(); ++size) {
         StateReader state(std::span<std::byte const>(bytes).first(size));
         Outer read;
-        EXPECT_THROW(state(read), ForeignState) << size;
+        EXPECT_THROW(take(state, read), ForeignState) << size;
     }
 }
 

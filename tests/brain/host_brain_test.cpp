@@ -80,9 +80,8 @@ TEST(HostBrain, FirstValueBeyondWhatARobotTakesIsWarnedOfWithItsRobot) {
     brain.inputs().send_face[0] = 4;
     tick(world, brain);
     ASSERT_EQ(warnings.lines().size(), 4U);
-    EXPECT_EQ(
-        warnings.lines()[2],
-        "brain of category 'robots': motors[0, 2] is 7, but the robot's model has no such motor; it moves nothing");
+    EXPECT_EQ(warnings.lines()[2],
+              "brain of category 'robots': motors[:, 2]: the robots' model has no such motor; its power moves nothing");
     EXPECT_EQ(warnings.lines()[3],
               "brain of category 'robots': send_face[0] is 4, expected -1 to 3; all directions are used");
 }

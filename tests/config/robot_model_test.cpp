@@ -334,18 +334,17 @@ TEST(RobotModel, NoKeyMovesWhatTheMotorsDoNotMove) {
 }
 
 TEST(RobotModel, MotorsWithoutASpeedAreWarnedOf) {
-    for (
-        auto const& [motors, said] : std::vector<std::pair<std::string, std::string>>{
-            {"{left: {linear_mm_s: 60}}",
-             "x.yaml:6: objects.robots.motors: none of these motors has a value of `angular_rad_s`, so they cannot turn "
-             "the robot; a map of motors replaces the whole one of the robot's type or model. Write angular_rad_s: 0 "
-             "in one of them if that is meant\n"},
-            {"{back: {angular_rad_s: 1}}",
-             "x.yaml:6: objects.robots.motors: none of these motors has a value of `linear_mm_s`, so they cannot move "
-             "the robot; a map of motors replaces the whole one of the robot's type or model. Write linear_mm_s: 0 in "
-             "one of them if that is meant\n"},
-            {"{left: {linear_mm_s: 60, angular_rad_s: 0}, right: {}}", ""},
-            {"{}", ""}}) {
+    for (auto const& [motors, said] : std::vector<std::pair<std::string, std::string>>{
+             {"{left: {linear_mm_s: 60}}",
+              "x.yaml:6: objects.robots.motors: none of these motors has a value of `angular_rad_s`, so they cannot "
+              "turn the robot; a map of motors replaces the whole one of the robot's type or model. Write "
+              "angular_rad_s: 0 in one of them if that is meant\n"},
+             {"{back: {angular_rad_s: 1}}",
+              "x.yaml:6: objects.robots.motors: none of these motors has a value of `linear_mm_s`, so they cannot move "
+              "the robot; a map of motors replaces the whole one of the robot's type or model. Write linear_mm_s: 0 in "
+              "one of them if that is meant\n"},
+             {"{left: {linear_mm_s: 60, angular_rad_s: 0}, right: {}}", ""},
+             {"{}", ""}}) {
         SCOPED_TRACE(motors);
         Warnings const warnings;
         robot("    motors: " + motors + "\n");
@@ -363,10 +362,10 @@ TEST(RobotModel, PartsWithoutAValueAreWarnedOf) {
             << warnings.text();
         EXPECT_NE(warnings.text().find(", found nothing; the default is used"), std::string::npos);
     }
-    Warnings const warnings;
-    robot("    motors:\n      left:\n      right: {linear_mm_s: 1, angular_rad_s: 1}\n");
-    EXPECT_NE(warnings.text().find("x.yaml:7: objects.robots.motors.left: expected "), std::string::npos)
-        << warnings.text();
+    EXPECT_EQ(
+        error_of([] { robot("    motors:\n      left:\n      right: {linear_mm_s: 1, angular_rad_s: 1}\n"); }),
+        "x.yaml:7: objects.robots.motors.left: expected a map, such as {linear_mm_s: 50, angular_rad_s: 2}, found "
+        "nothing; remove a motor that is not there");
 }
 
 TEST(RobotModel, WithoutItsKeysNothingIsAddedToTheRunsConfiguration) {

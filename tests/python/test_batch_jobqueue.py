@@ -261,6 +261,13 @@ def test_unknown_setting_is_named(tmp_path: Path) -> None:
         (("--jobqueue", "pbs", "--jobqueue-set", "queue"), "--jobqueue-set: expected KEY=VALUE, such as queue=short"),
         (("--jobqueue", "pbs", "--jobqueue-set", "cores=0.5"), "--jobqueue-set cores: expected a whole number of at"),
         (("--jobqueue", "pbs", "--jobqueue-set", "a=[1"), "--jobqueue-set a=[1: the value is no YAML"),
+        (
+            ("--jobqueue", "pbs", "--jobqueue-set", "cores=null"),
+            "--jobqueue-set cores=null: expected a value, found",
+        ),
+        (("--jobqueue", "pbs", "--jobqueue-set", "nanny=true"), "--jobqueue-set nanny: batches set it themselves"),
+        (("--jobqueue", "pbs", "--jobqueue-set", "scheduler-options=3"), "scheduler_options: expected a map, such as"),
+        (("--jobqueue", "pbs", "--jobqueue-set", "worker_extra_args=x"), "worker_extra_args: expected a list of texts"),
         (("--jobqueue-jobs", "3"), "--jobqueue-jobs goes with --jobqueue SYSTEM"),
         (("--jobqueue-set", "a=b"), "--jobqueue-set goes with --jobqueue SYSTEM"),
         (("--jobqueue", "pbs", "--workers", "3"), "--jobqueue goes without --backend, --scheduler and --workers; see"),

@@ -331,7 +331,7 @@ def test_mistakes_in_scripts_are_told(tmp_path: Path, brain: object, message: st
         ([{"time_s": 0}], r"objects\.robots\.brain\.script\.0: has a time and nothing else, so it does nothing"),
         (
             [{"time_s": 1, "motors": [2, 1, 0]}, {"time_s": 1, "motors": [9, 9, 0]}],
-            r"brain\.script\.1: replaces at once what the entry before it sets, which has the same time",
+            r"brain\.script\.1: replaces at once what an entry before it sets, which has the same time",
         ),
         ([{"time_s": 1, "motors": [2, 1, 0]}, {"time_s": 1, "led": [9, 9, 0]}], None),
         (
@@ -367,8 +367,8 @@ def test_motors_and_faces_that_a_model_lacks_are_told_to_the_host(
         brain.motors[1] = [5, 5, 5]
         brain.send(0, b"x", face=3)
         sim.step(20)
-        assert caplog.text.count("motors[1, 2] is 5, but the robot's model has no such motor; it moves nothing") == 1
-        assert caplog.text.count("send_face[0] is 3, but the robot's model has no such face; nothing is sent") == 1
+        assert caplog.text.count("motors[:, 2]: the robots' model has no such motor; its power moves nothing") == 1
+        assert caplog.text.count("send_face: the robots' model has no face 3; nothing is sent") == 1
         assert np.linalg.norm(sim.velocities[1]) > 0.0
 
 

@@ -21,6 +21,12 @@ CLUSTERS = {
     "moab": "MoabCluster",
     "htcondor": "HTCondorCluster",
 }
+OURS = ("processes", "nanny", "security", "silence_logs")
+TYPES: tuple[tuple[str, type, str], ...] = (
+    ("scheduler_options", dict, "a map, such as {port: 8786}"),
+    ("worker_extra_args", list, "a list of texts"),
+    ("job_extra_directives", list, "a list of texts"),
+)
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,13 @@ class QueuedJobs:
             raise BatchError(f"--jobqueue: expected one of {', '.join(CLUSTERS)}; found '{self.system}'")
         if self.jobs < 1:
             raise BatchError(f"--jobqueue-jobs: expected a whole number of at least 1; found {self.jobs}")
+        for key, _ in self.settings:
+            if key in OURS:
+                raise BatchError(f"--jobqueue-set {key}: batches set it themselves; remove it")
+        for key, kind, what in TYPES:
+            value = dict(self.settings).get(key, kind())
+            if not isinstance(value, kind):
+                raise BatchError(f"--jobqueue-set {key}: expected {what}; found {value!r}")
         cores = self.cores
         if cores is not None and (not isinstance(cores, int) or isinstance(cores, bool) or cores < 1):
             raise BatchError(f"--jobqueue-set cores: expected a whole number of at least 1; found {cores!r}")
@@ -119,4 +132,6 @@ def setting(text: str) -> tuple[str, Any]:
         read = value if ":" in value else yaml.safe_load(value)
     except yaml.YAMLError as error:
         raise BatchError(f"--jobqueue-set {text}: the value is no YAML ({str(error).splitlines()[0]})") from None
+    if read is None:
+        raise BatchError(f"--jobqueue-set {text}: expected a value, found nothing; remove it for that of jobqueue.yaml")
     return key.strip().replace("-", "_"), read
