@@ -226,6 +226,9 @@ def test_jobs_of_candidates_and_of_their_runs_are_runs_at_the_same_time() -> Non
         scheduler=None,
         isolated=False,
         slurm=False,
+        jobqueue=None,
+        jobqueue_jobs=None,
+        jobqueue_set=None,
         **dict.fromkeys(
             f"slurm_{name}" for name in ("jobs", "cores", "memory", "time", "partition", "account", "option", "wait")
         ),
