@@ -1,11 +1,9 @@
 #include "process/address_space.hpp"
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
-#include <fstream>
 #include <span>
-#include <string>
+
+#include "process/loaded_modules.hpp"
 
 namespace pogosim {
 
@@ -34,12 +32,9 @@ AddressSpace::AddressSpace(ProgramImage const& image)
     }
     // The heap of a process without random addresses (-no-pie) begins behind its executable. It may be in pieces,
     // because madvise() splits a mapping.
-    std::ifstream maps("/proc/self/maps");
-    for (std::string line; std::getline(maps, line);) {
-        Range range;
-        if (line.ends_with("[heap]") &&
-            std::sscanf(line.c_str(), "%" SCNx64 "-%" SCNx64, &range.begin, &range.end) == 2) {
-            heap_ = {.begin = heap_.end == 0 ? range.begin : heap_.begin, .end = range.end};
+    for (MappedMemory const& piece : mapped_memory()) {
+        if (piece.is_heap) {
+            heap_ = {.begin = heap_.end == 0 ? piece.begin : heap_.begin, .end = piece.end};
         }
     }
 }

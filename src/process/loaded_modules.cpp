@@ -95,14 +95,9 @@ std::vector<MappedMemory> mapped_memory() {
     std::vector<MappedMemory> pieces;
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
-        MappedMemory piece;
+        MappedMemory piece{.is_heap = line.ends_with("[heap]")};
         if (std::sscanf(line.c_str(), "%" SCNx64 "-%" SCNx64, &piece.begin, &piece.end) == 2) {
-            bool const is_next = !pieces.empty() && pieces.back().end == piece.begin;
-            if (is_next) {
-                pieces.back().end = piece.end;
-            } else {
-                pieces.push_back(piece);
-            }
+            pieces.push_back(piece);
         }
     }
     return pieces;

@@ -20,11 +20,14 @@ std::vector<LoadedModule> loaded_modules();
 /// The one that contains a place; null: none does.
 LoadedModule const* module_at(std::vector<LoadedModule> const& modules, void const* place);
 
-/// Other memory of this process: its heap, stacks and so on. Neighbours may be in one piece.
+/// A piece of the address space: code, a heap, a stack and so on.
 struct MappedMemory {
     std::uint64_t begin = 0;
     std::uint64_t end = 0;
+    bool is_heap = false;
 };
+
+/// All pieces of this process, in order. None on systems other than Linux.
 std::vector<MappedMemory> mapped_memory();
 
 }  // namespace pogosim

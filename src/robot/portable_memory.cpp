@@ -88,8 +88,8 @@ std::uint64_t AddressRegions::address_of(PortableAddress const& place) const {
 }
 
 bool AddressRegions::is_mapped(std::uint64_t address) const {
-    return std::ranges::any_of(
-        mapped_, [address](MappedMemory const& piece) { return address >= piece.begin && address < piece.end; });
+    auto const after = std::ranges::upper_bound(mapped_, address, {}, &MappedMemory::begin);
+    return after != mapped_.begin() && address < (after - 1)->end;
 }
 
 /// Addresses of the program and of user data may be at any place (packed structs), others at multiples of their size.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/counted.hpp"
+#include "base/fnv_1a.hpp"
 #include "base/locked_file.hpp"
 #include "device/flash.hpp"
 
@@ -21,14 +22,6 @@ constexpr std::uint16_t kVersion = 1;
 constexpr std::uint32_t kFlashBytes = kFlashPageCount * kFlashPageBytes;
 constexpr std::uint32_t kOldFlashBytes = 65536;  // of robots before version 3
 constexpr unsigned kBitsOfByte = 8;
-
-std::uint64_t fnv_1a(std::string_view bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (char const byte : bytes) {
-        hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-    }
-    return hash;
-}
 
 template <class Integer>
 void put(std::string& bytes, Integer value) {

@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <iterator>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/fnv_1a.hpp"
 #include "base/new_file.hpp"
 #include "config/configuration_text.hpp"
+#include "config/looked_up.hpp"
 #include "physics/physics_engine.hpp"
 #include "pogosim/version.h"
 #include "process/loaded_modules.hpp"
@@ -30,14 +31,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSignature{"PGSTATE\0", 8};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeadBytes = 8 + sizeof(std::uint32_t) + sizeof(std::uint64_t);
-constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325ULL;
-
-std::uint64_t fnv_1a(std::string_view bytes, std::uint64_t hash = kFnvBasis) {
-    for (char const byte : bytes) {
-        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-    }
-    return hash;
-}
 
 /// Keys that decide for how long a run goes on, and what it writes and shows: a state goes on with others.
 constexpr std::array<std::string_view, 27> kFreeKeys{"simulation_time",
@@ -132,21 +125,8 @@ std::string difference(std::string const& saved, std::string const& own) {
                        path_of(now, static_cast<std::size_t>(other - now.begin())));
 }
 
-std::string read_all(fs::path const& file) {
-    std::ifstream input(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(input), {}};
-}
-
-template <class T>
-T value_at(std::string_view bytes, std::size_t at) {
-    T value{};
-    std::memcpy(&value, bytes.data() + at, sizeof(T));
-    return value;
-}
-
-template <class T>
-void put(std::string& bytes, T value) {
-    bytes.append(reinterpret_cast<char const*>(&value), sizeof(T));
+std::string_view text_of(StateWriter const& state) {
+    return {reinterpret_cast<char const*>(state.bytes().data()), state.bytes().size()};
 }
 
 /// Throws ForeignState.
@@ -157,21 +137,26 @@ SavedState state_in(std::string_view bytes) {
     if (bytes.size() < kHeadBytes) {
         throw ForeignState("is cut off");
     }
-    if (auto const version = value_at<std::uint32_t>(bytes, kSignature.size()); version != kVersion) {
+    StateReader reader(std::as_bytes(std::span(bytes)).subspan(kSignature.size()));
+    std::uint32_t version = 0;
+    std::uint64_t count = 0;
+    reader(version, count);
+    if (version != kVersion) {
         throw ForeignState(fmt::format("was written by another version of Pogosim: its format is {}, and this is {}",
                                        version, kVersion));
     }
-    auto const count = value_at<std::uint64_t>(bytes, kHeadBytes - sizeof(std::uint64_t));
-    std::size_t const rest = bytes.size() - kHeadBytes;
+    std::size_t const rest = reader.rest().size();
     if (rest < sizeof(std::uint64_t) || count != rest - sizeof(std::uint64_t)) {
         throw ForeignState(fmt::format("is cut off: it has {} bytes", bytes.size()));
     }
-    if (fnv_1a(bytes.substr(0, kHeadBytes + count)) != value_at<std::uint64_t>(bytes, kHeadBytes + count)) {
+    StateReader content(reader.take_bytes(count));
+    std::uint64_t checksum = 0;
+    reader(checksum);
+    if (fnv_1a(bytes.substr(0, kHeadBytes + count)) != checksum) {
         throw ForeignState("is damaged: its checksum is not that of its bytes");
     }
-    StateReader reader(std::as_bytes(std::span(bytes).subspan(kHeadBytes, count)));
     SavedState saved;
-    reader(saved);
+    content(saved);
     return saved;
 }
 
@@ -198,7 +183,7 @@ RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, Wor
                                 identity.files);
     }
     for (ObjectFile const& file : scenario.object_files) {
-        identity.files = fnv_1a(read_all(file.path), identity.files);
+        identity.files = fnv_1a(bytes_at(file.path), identity.files);
     }
     return identity;
 }
@@ -216,7 +201,7 @@ SavedState read_state(fs::path const& file) {
     if (!input) {
         refuse(unread, fmt::format("cannot be read: {}", std::generic_category().message(errno)));
     }
-    std::string const bytes = read_all(file);
+    std::string const bytes = bytes_at(file);
     if (bytes.empty()) {
         refuse(unread, "is empty: the run that was to write it has not");
     }
@@ -259,7 +244,7 @@ StateOutput::StateOutput(fs::path const& file) : name_(file) {
     try {
         std::error_code error;
         if (fs::is_regular_file(file, error) && fs::file_size(file, error) > 0 &&
-            !read_all(file).starts_with(kSignature)) {
+            !bytes_at(file).starts_with(kSignature)) {
             throw ConfigError(
                 fmt::format("--save-state: '{}' is not the state of a run, and would be lost; choose another file, or "
                             "remove it",
@@ -281,14 +266,14 @@ StateOutput::StateOutput(fs::path const& file) : name_(file) {
 void StateOutput::write(SavedState const& saved) {
     StateWriter state;
     state(saved);
-    std::string bytes(kSignature);
-    put(bytes, kVersion);
-    put(bytes, std::uint64_t{state.bytes().size()});
-    bytes.append(reinterpret_cast<char const*>(state.bytes().data()), state.bytes().size());
-    put(bytes, fnv_1a(bytes));
+    StateWriter all;
+    all.add_bytes(std::as_bytes(std::span(kSignature)));
+    all(kVersion, std::uint64_t{state.bytes().size()});
+    all.add_bytes(state.bytes());
+    all(fnv_1a(text_of(all)));
     try {
         NewFile file(reserved_.path());
-        write_all(file.descriptor(), bytes);
+        write_all(file.descriptor(), text_of(all));
         file.replace(reserved_);
         reserved_.keep();
     } catch (FileError const& failure) {

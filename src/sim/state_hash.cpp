@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/fnv_1a.hpp"
 #include "device/flash.hpp"
 #include "process/address_space.hpp"
 #include "robot/robot_memory.hpp"
@@ -47,9 +48,9 @@ public:
     std::uint64_t value() const { return value_; }
 
 private:
-    void add_word(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3ULL; }
+    void add_word(std::uint64_t word) { value_ = (value_ ^ word) * kFnvPrime; }
 
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
+    std::uint64_t value_ = kFnvBasis;
 };
 
 void add_leds(Hash& hash, Leds const& leds) {
