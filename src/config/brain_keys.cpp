@@ -119,10 +119,16 @@ bool drives(Entry const& entry) {
     return std::ranges::any_of(entry.motors, [](std::optional<int> const& power) { return power.has_value(); });
 }
 
-/// Whether an entry sets at once what another one of the same time has set.
-bool replaces(Entry const& entry, Entry const& before) {
-    bool const is_same_led = before.led && entry.led && before.led_id == entry.led_id;
-    return before.time_s == entry.time_s && ((drives(before) && drives(entry)) || is_same_led);
+/// Whether the last entry sets at once what an earlier one of the same time has set.
+bool replaces_earlier(std::vector<Entry> const& entries) {
+    Entry const& entry = entries.back();
+    for (std::size_t i = entries.size() - 1; i-- > 0 && entries[i].time_s == entry.time_s;) {
+        bool const is_same_led = entries[i].led && entry.led && entries[i].led_id == entry.led_id;
+        if (is_same_led || (drives(entries[i]) && drives(entry))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// The last entry may leave no trace: with nothing in it, or in the place of an earlier one.
@@ -134,8 +140,7 @@ void warn_of_vain_entry(Place const& place, std::vector<Entry> const& entries) {
     bool const is_empty = !drives(entry) && !entry.led && entry.message.empty();
     if (is_empty && place.node.find("led_id") == nullptr) {
         warn("has a time and nothing else, so it does nothing; add `motors`, `led` or `message`");
-    } else if (std::any_of(entries.begin(), entries.end() - 1,
-                           [&](Entry const& before) { return replaces(entry, before); })) {
+    } else if (replaces_earlier(entries)) {
         warn("replaces at once what an entry before it sets, which has the same time");
     }
 }

@@ -227,18 +227,6 @@ struct NamedMotor {
 };
 constexpr std::array kNamedMotors{NamedMotor{"right", 0, 0}, NamedMotor{"left", 1, 1}, NamedMotor{"back", 2, 0}};
 
-struct WrittenMotors {};
-
-std::span<Key<WrittenMotors> const> named_motor_keys() {
-    using K = Key<WrittenMotors>;
-    static std::array const keys{
-        K{kNamedMotors[0].name, Elsewhere{kMotor}, any(), "", "The right motor."},
-        K{kNamedMotors[1].name, Elsewhere{kMotor}, any(), "", "The left motor."},
-        K{kNamedMotors[2].name, Elsewhere{kMotor}, any(), "", "The motor at the back."},
-    };
-    return keys;
-}
-
 /// The motors as shares of what all of them give together.
 void set_drives(std::vector<std::pair<std::uint8_t, WrittenMotor>> const& motors, RobotSpec& robot) {
     float linear_mm_s = 0.0F;
@@ -297,15 +285,13 @@ void read_motors(MapReader& reader, RobotSpec& robot) {
     std::vector<std::pair<std::uint8_t, WrittenMotor>> motors;
     reader.read_map("motors", kMotors, [&](MapReader& map) {
         refuse_unknown_motors(map);
-        WrittenMotors written;
-        map.read(named_motor_keys(), written);
         bool is_any_linear = false;
         bool is_any_angular = false;
         for (NamedMotor const& known : kNamedMotors) {
             if (map.find(known.name) == nullptr) {
                 continue;
             }
-            map.read_map(known.name, kMotor, [&](MapReader& inner) {
+            map.read_map(known.name, [&](MapReader& inner) {
                 auto& [id, motor] = motors.emplace_back(known.id, WrittenMotor{.forward = known.forward});
                 inner.read(motor_keys(), motor);
                 is_any_linear |= inner.find("linear_mm_s") != nullptr;

@@ -177,9 +177,10 @@ void give_back_signals_of_runs();
 
 /// Those of the watch.
 void catch_watch_signals();
+void give_back_watch_signals();
+
 /// Whether the host has functions of its own for the signals of the watch.
 bool host_handles_watch_signals();
-void give_back_watch_signals();
 
 /// Catches them once more, since the host may have taken them.
 void find_watch_signals_again();

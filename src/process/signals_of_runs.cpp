@@ -83,10 +83,10 @@ void need_signals() {
 void need_signals_no_more() {
     // The thread of the watch gives them back. A host that has handlers of its own for alarms gets them at once: ours
     // would let its system calls go on (SA_RESTART), which an alarm is to interrupt.
-    bool const stay = watches_over_blocked() && !host_handles_watch_signals();
+    bool const is_watched = watches_over_blocked();
     State& now = state();
     std::lock_guard const lock(now.mutex);
-    if (--now.needs == 0 && !stay) {
+    if (--now.needs == 0 && (!is_watched || host_handles_watch_signals())) {
         give_back(now);
     }
 }

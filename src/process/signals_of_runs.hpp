@@ -4,7 +4,8 @@
 // all back would cost more than such a step. So a host's process keeps them, and a thread of the simulator gives
 // the signals back when no step has followed for half a second (let_go_of_signals()). Meanwhile, signals that do
 // not concern a run are passed on to the handlers before. A handler that the host installs in the meantime is
-// found by the next step, unless that follows within 2 ms.
+// found by the next step, unless that follows within 2 ms. A host that handles alarms itself gets all back after
+// each step.
 #pragma once
 
 namespace pogosim {
