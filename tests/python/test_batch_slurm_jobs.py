@@ -9,9 +9,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from pogosim.batch.backends import by_jobs
+from pogosim.batch.cluster_jobs import LOST_PER_JOB, own_folder, with_keys
+from pogosim.batch.cluster_jobs import idle as idle_of
 from pogosim.batch.errors import BatchError
-from pogosim.batch.jobqueue import idle as idle_of
-from pogosim.batch.jobqueue import own_folder, with_keys
 from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.slurm import (
     SlurmWorkers,
@@ -19,10 +20,9 @@ from pogosim.batch.slurm import (
     close,
     job_settings,
     log_folder,
-    slurm,
     started,
 )
-from pogosim.batch.slurm_jobs import LOST_PER_JOB, Jobs
+from pogosim.batch.slurm_jobs import Jobs
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.temporary import TemporaryFolder
 
@@ -338,6 +338,6 @@ def test_run_that_ends_is_progress_and_logs_stay_if_it_failed(
 
 
 def test_batch_without_runs_needs_no_jobs(commands: Commands) -> None:
-    with slurm(SlurmJobs(), keep_idle=False) as do:
+    with by_jobs(SlurmJobs(), keep_idle=False) as do:
         assert list(do([])) == []
     assert commands.asked("sbatch") == []

@@ -95,14 +95,8 @@ class Workers:
         Raises:
             BatchError: It cannot be had.
         """
-        if isinstance(self.jobs, SlurmJobs):
-            from pogosim.batch.slurm import slurm
-
-            return slurm(self.jobs, keep_idle)
         if self.jobs is not None:
-            from pogosim.batch.jobqueue import jobqueue
-
-            return jobqueue(self.jobs, keep_idle)
+            return by_jobs(self.jobs, keep_idle)
         if self.backend == "ray":
             log.warning("--backend ray is replaced by --backend dask")
         return BACKENDS["dask" if self.scheduler is not None else self.backend](self)
@@ -126,6 +120,17 @@ def by_dask(workers: Workers) -> AbstractContextManager[Do]:
     from pogosim.batch.dask_backend import dask
 
     return dask(workers.count, workers.scheduler)
+
+
+@contextlib.contextmanager
+def by_jobs(request: SlurmJobs | QueuedJobs, keep_idle: bool) -> Iterator[Do]:
+    """Let jobs of a batch system do runs. They are submitted with the first runs, and end when this is closed."""
+    from pogosim.batch.jobqueue import QueuedWorkers
+    from pogosim.batch.slurm import SlurmWorkers
+
+    workers = SlurmWorkers(request, keep_idle) if isinstance(request, SlurmJobs) else QueuedWorkers(request, keep_idle)
+    with contextlib.closing(workers):
+        yield workers.do
 
 
 @contextlib.contextmanager

@@ -1,53 +1,40 @@
 """Runs done by jobs of PBS, Grid Engine and others, whose submission dask-jobqueue knows.
 
-Jobs are Dask workers, which join a scheduler in the process of the batch. Connections are encrypted and authenticated
-with keys made for the batch, as others use the same network.
+Jobs are Dask workers, which join a scheduler in the process of the batch, see `pogosim.batch.cluster_jobs`.
 """
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import logging
-import os
 import shutil
-import signal
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.cluster_jobs import (
+    LOST_PER_JOB,
+    forget_keys,
+    idle,
+    imported_jobqueue,
+    jobs_for,
+    own_folder,
+    runs_of_workers,
+    scheduler_options,
+    site_settings,
+    with_keys,
+)
 from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.in_job import do_in_job
 from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.slurm_jobs import LOST_PER_JOB
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB
-from pogosim.extras import installing
 from pogosim.lines import counted
 
-LOSSES_PER_RUN = 5
 REMIND_S = 60.0
 LEAVING_S = 3.0
-ROLES = ("scheduler", "worker", "client")
-
-
-@contextlib.contextmanager
-def jobqueue(
-    request: QueuedJobs, keep_idle: bool
-) -> Iterator[Callable[[Sequence[Task]], Generator[Outcome, None, None]]]:
-    """Let jobs of a batch system do runs. They are submitted with the first runs, and end when this is closed.
-
-    Args:
-        request: What to ask the batch system for.
-        keep_idle: Keep jobs for runs that are still to come; otherwise, those without one are cancelled.
-    """
-    workers = QueuedWorkers(request, keep_idle)
-    try:
-        yield workers.do
-    finally:
-        workers.close()
 
 
 class QueuedWorkers:
@@ -80,7 +67,7 @@ class QueuedWorkers:
         if tasks and self.client is None:
             self.start(tasks[0])
         if tasks:
-            self.submit(self.jobs_for(len(tasks)) - len(self.jobs))
+            self.submit(jobs_for(len(tasks), self.request.jobs, self.cores) - len(self.jobs))
         return self.outcomes(tasks)
 
     def start(self, task: Task) -> None:
@@ -120,17 +107,9 @@ class QueuedWorkers:
             "cores": cores,
             "processes": 1,  # simulators are processes of their own, which its threads wait for
             "nanny": False,  # the batch system sees when a worker ends
-            "scheduler_options": {
-                "dashboard_address": "127.0.0.1:0",
-                "allowed_failures": max(retries, LOSSES_PER_RUN),
-                **(given.get("scheduler_options") or {}),
-            },
+            "scheduler_options": scheduler_options(retries, given.get("scheduler_options")),
             "worker_extra_args": [*(given.get("worker_extra_args") or []), "--preload", "pogosim.batch.in_job"],
         }
-
-    def jobs_for(self, runs: int) -> int:
-        """Return how many jobs are of use for so many runs, at most as many as are asked for."""
-        return min(self.request.jobs, -(-runs // self.cores))
 
     def submit(self, number: int) -> None:
         """Submit some jobs.
@@ -152,9 +131,7 @@ class QueuedWorkers:
             self.submitted += 1
         if number > 0:
             counts = f"{counted(number, 'job')} of {counted(self.cores, 'core')}"
-            tell(
-                f"{self.request.system}: submitted {counts}; logs: {self.cluster.new_spec['options']['log_directory']}"
-            )
+            tell(f"{self.request.system}: submitted {counts}; logs: {self.logs}")
 
     def outcomes(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
         """Yield the outcomes of runs, and look after the jobs meanwhile."""
@@ -195,7 +172,7 @@ class QueuedWorkers:
                 f"more memory, ask for it by --jobqueue-set; logs: {self.logs}"
             )
         if lost:
-            self.submit(self.jobs_for(left) - len(self.jobs))
+            self.submit(jobs_for(left, self.request.jobs, self.cores) - len(self.jobs))
         now = time.monotonic()
         if not self.joined and now - self.told_s >= REMIND_S:
             self.told_s = now
@@ -238,74 +215,7 @@ def noting_joined(distributed: Any, joined: set[str]) -> Any:
     return Noting()
 
 
-def runs_of_workers(cluster: Any) -> dict[str, int]:
-    """Return how many runs the workers of a cluster have been given, by their names."""
-    return {str(worker.name): len(worker.processing) for worker in list(cluster.scheduler.workers.values())}
-
-
-def idle(jobs: Iterable[str], workers: Mapping[str, int], cores: int, left: int) -> list[str]:
-    """Return the jobs that have nothing to do any more: all runs that are left are being done in others.
-
-    Args:
-        jobs: Names of jobs.
-        workers: Runs that were given to the workers of jobs, by the names of the jobs.
-        cores: Runs at the same time in each.
-        left: Runs that are not finished.
-    """
-    if sum(min(assigned, cores) for assigned in workers.values()) < left:
-        return []
-    return [job for job in jobs if not workers.get(job)]
-
-
 def words_of(error: Exception) -> str:
     """Return what a command of a batch system has said, in one line: dask-jobqueue quotes it."""
     said = str(error).partition("stderr:\n")[2].strip() or str(error)
     return one_line("; ".join(line for line in said.splitlines() if line.strip()))
-
-
-def imported_jobqueue(flag: str) -> Any:
-    """Return the package dask_jobqueue.
-
-    Raises:
-        BatchError: It, or what its encryption needs, is not installed; says what the flag needs.
-    """
-    on_interrupt = signal.getsignal(signal.SIGINT)
-    try:
-        importlib.import_module("cryptography")
-        return importlib.import_module("dask_jobqueue")
-    except ImportError as error:
-        package = "cryptography" if error.name == "cryptography" else "dask-jobqueue"
-        raise BatchError(f"{flag} needs the Python package '{package}'; install it: {installing('slurm')}") from None
-    finally:
-        signal.signal(signal.SIGINT, on_interrupt)  # dask_jobqueue puts its own
-
-
-def site_settings(dask: Any, system: str) -> dict[str, Any]:
-    """Return what the site and the user say about a batch system in jobqueue.yaml, or in the environment."""
-    entries = (dask.config.collect().get("jobqueue") or {}).get(system) or {}
-    return {key.replace("_", "-"): value for key, value in entries.items() if value is not None}
-
-
-def with_keys(security: Any, folder: Path) -> Any:
-    """Return the security of connections with keys of this batch alone, which are files that workers read."""
-    made = security.temporary().get_tls_config_for_role("worker")
-    paths = {name: folder / f"tls_{name}.pem" for name in ("ca_file", "cert", "key")}
-    for name, path in paths.items():
-        path.unlink(missing_ok=True)
-        path.touch(mode=0o600)
-        path.write_text(made[name])
-    pairs = {f"tls_{role}_{name}": str(paths[name]) for role in ROLES for name in ("cert", "key")}
-    return security(require_encryption=True, tls_ca_file=str(paths["ca_file"]), **pairs)
-
-
-def forget_keys(folder: Path) -> None:
-    """Remove the keys of a batch."""
-    for path in folder.glob("tls_*.pem"):
-        path.unlink(missing_ok=True)
-
-
-def own_folder(path: Path) -> Path:
-    """Make a folder that only its owner can read."""
-    path.mkdir(parents=True, exist_ok=True)
-    os.chmod(path, 0o700)  # noqa: PTH101
-    return path

@@ -11,44 +11,30 @@ import contextlib
 import hashlib
 import logging
 import shutil
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.dask_backend import imported, outcomes_of
-from pogosim.batch.errors import BatchError, one_line, tell
-from pogosim.batch.in_job import do_in_job
-from pogosim.batch.jobqueue import (
-    LOSSES_PER_RUN,
+from pogosim.batch.cluster_jobs import (
     forget_keys,
     idle,
     imported_jobqueue,
+    jobs_for,
     own_folder,
     runs_of_workers,
+    scheduler_options,
     site_settings,
     with_keys,
 )
+from pogosim.batch.dask_backend import imported, outcomes_of
+from pogosim.batch.errors import BatchError, one_line, tell
+from pogosim.batch.in_job import do_in_job
 from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_jobs import Jobs, check_commands
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
 from pogosim.lines import counted
 
 POWERS = {"K": 1, "": 2, "M": 2, "G": 3, "T": 4}
-
-
-@contextlib.contextmanager
-def slurm(request: SlurmJobs, keep_idle: bool) -> Iterator[Callable[[Sequence[Task]], Generator[Outcome, None, None]]]:
-    """Let jobs of SLURM do runs. They are submitted with the first runs, and end when this is closed.
-
-    Args:
-        request: What to ask SLURM for.
-        keep_idle: Keep jobs for runs that are still to come; otherwise, those without one are cancelled.
-    """
-    jobs = SlurmWorkers(request, keep_idle)
-    try:
-        yield jobs.do
-    finally:
-        jobs.close()
 
 
 class SlurmWorkers:
@@ -76,7 +62,7 @@ class SlurmWorkers:
         if tasks and self.jobs is None:
             self.start(tasks)
         elif self.jobs is not None:
-            self.jobs.wanted = max(self.jobs.wanted, jobs_for(tasks, self.request, self.jobs.cores))
+            self.jobs.wanted = max(self.jobs.wanted, jobs_for(len(tasks), self.request.jobs, self.jobs.cores))
         return self.outcomes(tasks)
 
     def start(self, tasks: Sequence[Task]) -> None:
@@ -135,17 +121,13 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
     cores = request.cores or site.get("cores") or CORES
     folder = own_folder(log_folder(task))
     settings = job_settings(request, site, cores, folder)
-    settings["scheduler_options"] = {
-        "dashboard_address": "127.0.0.1:0",
-        "allowed_failures": max(task.retries, LOSSES_PER_RUN),
-        **(site.get("scheduler-options") or {}),
-    }
+    settings["scheduler_options"] = scheduler_options(task.retries, site.get("scheduler-options"))
     try:
         settings["security"] = with_keys(distributed.Security, folder)
         cluster = jobqueue.SLURMCluster(silence_logs=logging.CRITICAL, **settings)
     except (OSError, ValueError, RuntimeError) as error:
         raise BatchError(f"--slurm: the Dask scheduler cannot be started: {one_line(error)}") from None
-    wanted = jobs_for(tasks, request, cores)
+    wanted = jobs_for(len(tasks), request.jobs, cores)
     start_timeout_s = None if request.wait_min is None else 60 * request.wait_min
     jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, start_timeout_s, settings["log_directory"])
     atexit.register(jobs.cancel)  # whatever happens to the batch before its first run
@@ -159,11 +141,6 @@ def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], r
     counts = f"{counted(wanted, 'job')} of {counted(cores, 'core')}"
     tell(f"SLURM: submitted {counts}, called {job_name(task)}; logs: {settings['log_directory']}")
     return cluster, jobs
-
-
-def jobs_for(tasks: Sequence[Task], request: SlurmJobs, cores: int) -> int:
-    """Return how many jobs are of use for runs, at most as many as are asked for."""
-    return min(request.jobs, -(-len(tasks) // cores))
 
 
 def job_settings(request: SlurmJobs, site: dict[str, Any], cores: int, folder: Path) -> dict[str, Any]:

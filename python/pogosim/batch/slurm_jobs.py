@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from pogosim.batch.cluster_jobs import LOST_PER_JOB, jobs_for
 from pogosim.batch.errors import BatchError, one_line, tell
 from pogosim.batch.run_log import tail
 from pogosim.lines import counted
@@ -23,7 +24,6 @@ BLOCKING_REASONS = re.compile(
     r"(Partition(Config|NodeLimit|TimeLimit)|BadConstraints|DependencyNeverSatisfied|MaxMemPerLimit"
     r"|Invalid(Account|QOS)|(Account|QOS)NotAllowed|(Assoc|QOS)(Max|Min)\w+PerJob\w*)$"
 )
-LOST_PER_JOB = 3  # so many jobs in place of one may be lost before a run is finished
 REMIND_S = 60.0
 SHORTEST_POLL_S, LONGEST_POLL_S = 2.0, 30.0  # squeue burdens the controller of the whole cluster
 
@@ -114,7 +114,7 @@ class Jobs:
             else:
                 self.states[job] = (state, reason)
         self.check_hope()
-        self.submit(min(self.wanted, -(-left // self.cores)) - len(self.states))
+        self.submit(jobs_for(left, self.wanted, self.cores) - len(self.states))
         self.say()
 
     def listed(self) -> dict[str, tuple[str, str]] | None:
