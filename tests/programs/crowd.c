@@ -31,7 +31,7 @@ static void crowd_init(void) {
     msg_tx_fn = send;
 }
 
-static void crowd_step(void) {
+static void look_and_shine(void) {
     for (int i = 0; i < 3; i++) {
         int32_t const level = pogobot_photosensors_read((uint8_t)i);
         if (level > mydata->brightest) {
@@ -39,6 +39,10 @@ static void crowd_step(void) {
         }
     }
     pogobot_led_setColor((uint8_t)(mydata->heard % 26), 0, 25);
+}
+
+static void walk(void) {
+    look_and_shine();
     if (current_time_milliseconds() >= mydata->next_turn_ms) {
         mydata->next_turn_ms = current_time_milliseconds() + 300u + (uint32_t)rand() % 2000u;
         pogobot_motor_set(motorL, either(motorFull));
@@ -57,11 +61,14 @@ static void export_data(void) {
 }
 
 int main(void) {
-    static char const* const kCategories[] = {"robots",    "walls",  "strip",         "pogobjects",
-                                              "membranes", "active", "rectmembranes", "guards"};
+    static char const* const kWithMotors[] = {"robots", "guards"};
+    static char const* const kWithout[] = {"walls", "strip", "pogobjects", "membranes", "active", "rectmembranes"};
     pogobot_init();
-    for (unsigned i = 0; i < sizeof kCategories / sizeof kCategories[0]; i++) {
-        pogobot_start(crowd_init, crowd_step, kCategories[i]);
+    for (unsigned i = 0; i < sizeof kWithMotors / sizeof kWithMotors[0]; i++) {
+        pogobot_start(crowd_init, walk, kWithMotors[i]);
+    }
+    for (unsigned i = 0; i < sizeof kWithout / sizeof kWithout[0]; i++) {
+        pogobot_start(crowd_init, look_and_shine, kWithout[i]);
     }
     SET_CALLBACK(callback_create_data_schema, create_data_schema);
     SET_CALLBACK(callback_export_data, export_data);
