@@ -266,8 +266,8 @@ void check_scripts(Scenario const& scenario) {
                        shown(object.category));
         } else if (script->entries.front().time_s >= scenario.simulation_time_s) {
             log().warn(
-                "{}: objects.{}.brain: the script begins at {} s, after the end of the run (simulation_time: {}), "
-                "so these robots do nothing",
+                "{}: objects.{}.brain: the script begins at {} s, but the run ends at {} s (simulation_time), so these "
+                "robots do nothing",
                 object.line, shown(object.category), number_text(script->entries.front().time_s),
                 number_text(scenario.simulation_time_s));
         } else if (double const last_s = script->entries.back().time_s;

@@ -269,6 +269,7 @@ void read_robot(MapReader& reader, ObjectConfig& object, RobotModel const& model
     reader.read(sensor_model_keys(), robot.sensors);
     reader.read(sensor_keys(), robot.sensors);
     reader.read(brain_keys(), robot);
+    robot.brain = ScriptSpec();  // where it cannot be read, so that no program is asked for
     reader.collect([&] { robot.brain = read_brain(reader, robot.model); });
     reader.collect([&] { robot.function_costs = read_function_costs(reader); });
     reader.read(battery_map_keys(), robot);

@@ -321,7 +321,10 @@ def test_mistakes_in_scripts_are_told(tmp_path: Path, brain: object, message: st
     ("entries", "message"),
     [
         ([], r": objects\.robots\.brain: the script is empty, so these robots do nothing"),
-        ([{"time_s": 10, "motors": [9, 9, 0]}], r"the script begins at 10 s, after the end .* \(simulation_time: 10\)"),
+        (
+            [{"time_s": 10, "motors": [9, 9, 0]}],
+            r"the script begins at 10 s, but the run ends at 10 s \(simulation_time\)",
+        ),
         ([{"time_s": 0, "motors": [1, 1, 0]}], r"if you meant shares of full power, write \[1023, 1023, 0\]"),
         ([{"time_s": 9, "motors": [2, 1, 0]}, {"time_s": 11, "motors": [0, 0, 0]}], None),
         (

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from firmwares import without_program
 from flash_files import EMPTY
 from PIL import Image
 from running import ROOT, Run, Settings, compile_text, example, run, run_command, write_scene
@@ -145,6 +146,13 @@ def test_check_needs_no_display_and_no_ending_of_the_run(tmp_path: Path) -> None
 
 
 # ---- What is wrong ----
+
+
+def test_a_brain_that_cannot_be_read_asks_for_no_program(tmp_path: Path) -> None:
+    brain = {"script": [{"time_s": 0, "motors": {"left": 3}}]}
+    found = mistakes(check(without_program(), tmp_path, {"objects.robots.brain": brain}))
+    assert len(found) == 1
+    assert "script.0.motors: expected a list of three powers" in found[0]
 
 
 def test_all_mistakes_are_told_at_once_each_with_its_line(tmp_path: Path) -> None:

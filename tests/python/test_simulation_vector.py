@@ -135,6 +135,7 @@ def test_wrong_choice_of_runs_is_refused(tmp_path: Path) -> None:
         for which, message in (
             ([1, 4], "which: there is no run 4: the simulation has 4"),
             ([True], "which: expected 4 values of True or False, one for each, found 1"),
+            ([0, True], "which: expected indices, or True or False for each, but not both"),
             ([0.5], "which: expected an index, an array of indices, or True or False for each run"),
             ([1, 1], "which: each run can be named once only"),
         ):

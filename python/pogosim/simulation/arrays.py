@@ -57,6 +57,8 @@ def chosen_rows(name: str, chosen: Any, count: int, what: str, where: str) -> np
         ConfigurationError: It is none of these, or there is nothing of an index.
     """
     rows = np.asarray(chosen)
+    if rows.dtype != np.bool_ and isinstance(chosen, list | tuple) and any(isinstance(one, bool) for one in chosen):
+        raise given.refused(name, "indices, or True or False for each, but not both", chosen)
     if rows.dtype == np.bool_ and rows.ndim == 1:
         if len(rows) != count:
             raise ConfigurationError(
