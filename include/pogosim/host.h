@@ -4,8 +4,8 @@
 /// time step that another thread is making, not for all of its steps. The last call of a run is pogosim_run_close().
 /// The package `pogosim` of Python is made with this (`pogosim.Simulation`); it is meant for other languages, too.
 ///
-/// Functions that can fail return a status; pogosim_host_error() then says what, in one line. Pointers are not NULL but
-/// where that is said.
+/// Functions that can fail return a status; pogosim_host_error() then says what, in one line, or in a line for each
+/// mistake of a configuration. Pointers are not NULL but where that is said.
 ///
 ///     cc host.c $(pkg-config --cflags --libs pogosim-host)
 ///

@@ -6,8 +6,10 @@
 #include <new>
 #include <string>
 
+#include "base/escaped.hpp"
 #include "base/floating_point.hpp"
 #include "base/memory.hpp"
+#include "base/problems.hpp"
 #include "host/hosted_run.hpp"
 
 namespace pogosim {
@@ -19,8 +21,17 @@ inline std::string& error_text() {
 }
 
 inline int failed(std::string const& what, int status = POGOSIM_USAGE) {
-    error_text() = what;
+    error_text() = escaped(what);
     return status;
+}
+
+/// Keeps a line for each mistake.
+inline int failed(ConfigErrors const& errors) {
+    error_text().clear();
+    for (std::string const& message : errors.messages()) {
+        error_text() += (error_text().empty() ? "" : "\n") + escaped(message);
+    }
+    return POGOSIM_USAGE;
 }
 
 /// Runs a function that may throw, and returns its status.
@@ -33,6 +44,8 @@ int with_status(Body const& body) {
         return failed(failure.what(), failure.code == ExitCode::user_program ? POGOSIM_PROGRAM_FAILED : POGOSIM_USAGE);
     } catch (std::bad_alloc const&) {
         return failed(kOutOfMemory);
+    } catch (ConfigErrors const& errors) {
+        return failed(errors);
     } catch (std::exception const& error) {
         return failed(error.what());
     } catch (...) {
