@@ -41,19 +41,21 @@ bool comes_back(int signal, void const* frame) {
 }  // namespace
 
 void catch_signal(int signal, int flags, SignalHandler handler) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    // After it was given back, the host may have restored it.
+    bool const again =
+        before.sa_sigaction == handler || (is_caught(signal) && before.sa_sigaction == caught(signal).handler);
+    // All is known before the handler is there: a signal often arrives as the call that installs it returns.
+    if (!again) {
+        caught(signal).before = before;
+    }
+    caught(signal).handler = handler;
     struct sigaction action = {};
     sigemptyset(&action.sa_mask);
     action.sa_flags = flags | SA_NODEFER | SA_SIGINFO;
     action.sa_sigaction = handler;
-    struct sigaction before = {};
-    sigaction(signal, &action, &before);
-    // After it was given back, the host may have restored it.
-    bool const again =
-        before.sa_sigaction == handler || (is_caught(signal) && before.sa_sigaction == caught(signal).handler);
-    caught(signal).handler = handler;
-    if (!again) {
-        caught(signal).before = before;
-    }
+    sigaction(signal, &action, nullptr);
 }
 
 bool is_caught(int signal) {
@@ -80,13 +82,15 @@ void give_back_signal(int signal) {
 void pass_on(int signal, siginfo_t* info, void* context) {
     struct sigaction const& before = caught(signal).before;
     bool const is_alarm = signal == SIGALRM || signal == SIGPROF;
-    // A handler that took ours for the one before it, which was given back since, calls it none the less.
+    // A handler that took ours for the one before it, which was given back since, calls it none the less. A signal may
+    // also have been on its way here while another thread gave it back.
     bool const is_stale = !is_caught(signal);
-    if (before.sa_handler == SIG_IGN || (is_stale && is_alarm)) {
+    bool const has_handler = before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN;
+    if (before.sa_handler == SIG_IGN || (is_stale && is_alarm && !has_handler)) {
         return;
     }
     void const* const frame = __builtin_frame_address(0);
-    if (before.sa_handler == SIG_DFL || is_stale || comes_back(signal, frame)) {
+    if (!has_handler || (is_stale && !is_alarm) || comes_back(signal, frame)) {
         std::signal(signal, SIG_DFL);
         if (is_alarm || info->si_code <= 0) {  // sent: it does not come again by itself, as a crash does
             std::raise(signal);
