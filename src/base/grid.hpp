@@ -33,11 +33,6 @@ public:
     template <class Found>
     bool any_run_near(Vec2 centre, float radius_mm, Found const& is_found) const;
 
-    /// Calls visit(cell) in growing rings of cells around a point in the box, until done(gap_mm), where all points
-    /// nearer than `gap_mm` have been visited. Not for periodic grids.
-    template <class Visit, class Done>
-    void search_outwards(Vec2 centre, Visit const& visit, Done const& done) const;
-
 private:
     struct Span {
         int first;
@@ -89,13 +84,6 @@ public:
             visit_cell(cell, visit);
             return false;
         });
-    }
-
-    /// See GridCells::search_outwards.
-    template <class Visit, class Done>
-    void search_outwards(Vec2 centre, Visit const& visit, Done const& done) const {
-        cells_.search_outwards(
-            centre, [&](std::size_t cell) { visit_cell(cell, visit); }, done);
     }
 
 private:
@@ -189,32 +177,6 @@ bool GridCells::any_run_near(Vec2 centre, float radius_mm, Found const& is_found
         }
     }
     return false;
-}
-
-template <class Visit, class Done>
-void GridCells::search_outwards(Vec2 centre, Visit const& visit, Done const& done) const {
-    int const c = column_of(centre.x);
-    int const r = row_of(centre.y);
-    Vec2 const cell_mm{1.0F / columns_per_mm_, 1.0F / rows_per_mm_};
-    float const x = centre.x - origin_.x - cell_mm.x * static_cast<float>(c);
-    float const y = centre.y - origin_.y - cell_mm.y * static_cast<float>(r);
-    float const to_border = std::max(std::min({x, cell_mm.x - x, y, cell_mm.y - y}), 0.0F);
-    float const narrow_mm = std::min(cell_mm.x, cell_mm.y);
-    int const last = std::max({c, columns_ - 1 - c, r, rows_ - 1 - r});
-    for (int ring = 0; ring <= last; ++ring) {
-        if (ring > 0 && done(static_cast<float>(ring - 1) * narrow_mm + to_border)) {
-            return;
-        }
-        for (int i = std::max(r - ring, 0); i <= std::min(r + ring, rows_ - 1); ++i) {
-            // Whole rows at the top and bottom of the ring, its two sides in between.
-            int const stride = i == r - ring || i == r + ring || ring == 0 ? 1 : 2 * ring;
-            for (int j = c - ring; j <= c + ring; j += stride) {
-                if (j >= 0 && j < columns_) {
-                    visit(index(j, i));
-                }
-            }
-        }
-    }
 }
 
 }  // namespace pogosim

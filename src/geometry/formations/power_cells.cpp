@@ -1,0 +1,168 @@
+#include "geometry/formations/power_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace pogosim {
+
+namespace {
+
+constexpr std::size_t kPointsPerLeaf = 48;  // at most, on average
+constexpr int kMostLevels = 10;
+constexpr float kDoubt = 1.0e-5F;  // of squared lengths: their rounding is far below
+
+/// Which of 2^levels equal intervals of a range a value is in.
+std::uint32_t interval_of(float value, float min, float size, int levels) {
+    auto const count = static_cast<float>(1U << static_cast<unsigned>(levels));
+    float const place = size > 0.0F ? (value - min) / size * count : 0.0F;
+    return static_cast<std::uint32_t>(std::clamp(place, 0.0F, count - 1.0F));
+}
+
+/// The number of a leaf: the bits of column and row in turn.
+std::uint32_t morton(std::uint32_t column, std::uint32_t row, int levels) {
+    std::uint32_t number = 0;
+    for (int bit = levels - 1; bit >= 0; --bit) {
+        number =
+            number << 2U | (row >> static_cast<unsigned>(bit) & 1U) << 1U | (column >> static_cast<unsigned>(bit) & 1U);
+    }
+    return number;
+}
+
+/// A quarter of a box, in Morton order.
+Box quarter(Box const& box, std::uint32_t number) {
+    Vec2 const middle = box.centre();
+    Box part = box;
+    ((number & 1U) != 0 ? part.min.x : part.max.x) = middle.x;
+    ((number & 2U) != 0 ? part.min.y : part.max.y) = middle.y;
+    return part;
+}
+
+}  // namespace
+
+struct PowerCells::Search {
+    struct Candidate {
+        Vec2 place_mm;
+        float weight_mm2;
+        std::uint32_t site;
+
+        float power(Vec2 point_mm) const { return squared_length(place_mm - point_mm) - weight_mm2; }
+    };
+
+    std::vector<Candidate> candidates;  // of the parts of the tree that are being looked at, one after the other
+    std::vector<PointSum> sums;
+
+    /// The nearest of a point among the candidates from `first` to `end`.
+    Candidate const& nearest(Vec2 point_mm, std::size_t first, std::size_t end) const {
+        std::size_t best = first;
+        float least = candidates[first].power(point_mm);
+        for (std::size_t i = first + 1; i < end; ++i) {
+            float const own = candidates[i].power(point_mm);
+            best = own < least ? i : best;
+            least = std::min(own, least);
+        }
+        return candidates[best];
+    }
+
+    /// Repeats, at the end, the candidates from `first` on that may be the nearest of a point in a box.
+    void keep_near(Box const& box_mm, std::size_t first) {
+        std::size_t const end = candidates.size();
+        Vec2 const centre = box_mm.centre();
+        Vec2 const half = 0.5F * box_mm.size();
+        Candidate const best = nearest(centre, first, end);
+        Vec2 const to_best = best.place_mm - centre;
+        float const best_power = best.power(centre);
+        float const doubt_of_best = kDoubt * (squared_length(to_best) + squared_length(half));
+        candidates.resize(2 * end - first);  // at most
+        std::size_t kept = end;
+        for (std::size_t i = first; i < end; ++i) {
+            Candidate const own = candidates[i];
+            Vec2 const to_site = own.place_mm - centre;
+            Vec2 const apart = to_site - to_best;
+            // The difference of the powers is linear in the point, so it is least in a corner.
+            float const most_gained = 2.0F * (half.x * std::fabs(apart.x) + half.y * std::fabs(apart.y));
+            float const doubt = doubt_of_best + kDoubt * (squared_length(to_site) + own.weight_mm2);
+            candidates[kept] = own;
+            kept += own.power(centre) - best_power - most_gained <= doubt ? 1 : 0;
+        }
+        candidates.resize(kept);
+    }
+};
+
+PowerCells::PowerCells(Box const& bounds_mm, std::span<Vec2 const> points_mm)
+    : bounds_mm_(bounds_mm), points_mm_(points_mm.size()) {
+    int depth = 0;
+    while (depth < kMostLevels && kPointsPerLeaf << static_cast<unsigned>(2 * depth) < points_mm.size()) {
+        ++depth;
+    }
+    std::vector<std::uint32_t> leaf_of;
+    leaf_of.reserve(points_mm.size());
+    std::vector<Node> leaves(std::size_t{1} << static_cast<unsigned>(2 * depth));
+    Vec2 const size = bounds_mm.size();
+    for (Vec2 const point : points_mm) {
+        std::uint32_t const leaf = morton(interval_of(point.x, bounds_mm.min.x, size.x, depth),
+                                          interval_of(point.y, bounds_mm.min.y, size.y, depth), depth);
+        leaf_of.push_back(leaf);
+        leaves[leaf].sum.add({.x_mm = point.x, .y_mm = point.y, .count = 1});
+    }
+    std::uint32_t next = 0;
+    for (Node& leaf : leaves) {
+        leaf.first = leaf.end = next;
+        next += static_cast<std::uint32_t>(leaf.sum.count);
+    }
+    for (std::size_t i = 0; i < points_mm.size(); ++i) {
+        points_mm_[leaves[leaf_of[i]].end++] = points_mm[i];
+    }
+    levels_.resize(static_cast<std::size_t>(depth) + 1);
+    levels_.back() = std::move(leaves);
+    for (std::size_t above = levels_.size() - 1; above-- > 0;) {
+        std::vector<Node> const& parts = levels_[above + 1];
+        levels_[above].resize(parts.size() / 4);
+        for (std::size_t i = 0; i < levels_[above].size(); ++i) {
+            Node& node = levels_[above][i];
+            node.first = parts[4 * i].first;
+            node.end = parts[4 * i + 3].end;
+            for (std::size_t part = 4 * i; part < 4 * i + 4; ++part) {
+                node.sum.add(parts[part].sum);
+            }
+        }
+    }
+}
+
+void PowerCells::visit(Search& search, int number, std::uint32_t place, Box const& box_mm,
+                       std::size_t first_candidate) const {
+    Node const& node = level(number)[place];
+    if (node.sum.count == 0) {
+        return;
+    }
+    std::size_t const first = search.candidates.size();
+    search.keep_near(box_mm, first_candidate);
+    std::size_t const end = search.candidates.size();
+    if (end - first == 1) {
+        search.sums[search.candidates[first].site].add(node.sum);
+    } else if (static_cast<std::size_t>(number) + 1 == levels_.size()) {
+        for (std::uint32_t i = node.first; i < node.end; ++i) {
+            Vec2 const point = points_mm_[i];
+            search.sums[search.nearest(point, first, end).site].add({.x_mm = point.x, .y_mm = point.y, .count = 1});
+        }
+    } else {
+        for (std::uint32_t part = 0; part < 4; ++part) {
+            visit(search, number + 1, 4 * place + part, quarter(box_mm, part), first);
+        }
+    }
+    search.candidates.resize(first);
+}
+
+std::vector<PointSum> PowerCells::sums(std::span<Vec2 const> sites_mm, std::span<float const> weights_mm2) const {
+    Search search;
+    search.sums.resize(sites_mm.size());
+    search.candidates.reserve(4 * sites_mm.size());
+    for (std::uint32_t site = 0; site < sites_mm.size(); ++site) {
+        search.candidates.push_back({.place_mm = sites_mm[site], .weight_mm2 = weights_mm2[site], .site = site});
+    }
+    visit(search, 0, 0, bounds_mm_, 0);
+    return std::move(search.sums);
+}
+
+}  // namespace pogosim
