@@ -53,6 +53,7 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
         ("batch_runs", ["--workers", "x"]),
         ("batch_runs", ["--seconds", "-1"]),
         ("batch_runs", ["-o", __file__]),
+        ("policies", ["--robots", "0"]),
         ("compare_engines", ["--robots", "-1"]),
         ("compare_engines", ["--time-step", "nan"]),
         ("compare_engines", ["no_such_arena"]),
