@@ -42,12 +42,17 @@ private:
     // awake.
     static constexpr float kTolerance = 1e-4F;  // of the area
 
+    template <MembraneLine Line>
+    static std::size_t after(Line const& line, std::size_t i) {
+        return i + 1 < line.size() ? i + 1 : 0;
+    }
+
     /// Signed, positive when the bodies run clockwise on the screen.
     template <MembraneLine Line>
     static float enclosed(Line const& line) {
         float twice = 0.0F;
         for (std::size_t i = 0; i < line.size(); ++i) {
-            twice += cross(line.position(i), line.position((i + 1) % line.size()));
+            twice += cross(line.position(i), line.position(after(line, i)));
         }
         return 0.5F * twice;
     }
@@ -55,8 +60,8 @@ private:
     /// How the area grows when body i moves.
     template <MembraneLine Line>
     static Vec2 gradient(Line const& line, std::size_t i) {
-        std::size_t const count = line.size();
-        Vec2 const across = line.position((i + 1) % count) - line.position((i + count - 1) % count);
+        std::size_t const before = i > 0 ? i - 1 : line.size() - 1;
+        Vec2 const across = line.position(after(line, i)) - line.position(before);
         return {0.5F * across.y, -0.5F * across.x};
     }
 
