@@ -97,10 +97,18 @@ void declare_options(CLI::App& app, CommandLine& options) {
                        "save the state of the run in this file at its end, also when it is interrupted")
             ->type_name("FILE")
             ->check(is_not_empty);
-    app.add_option("--at", options.save_at_s, "with --save-state: save it at this simulated time; the run goes on")
+    CLI::Option* const save_at =
+        app.add_option("--at", options.save_at_s, "with --save-state: save it at this simulated time; the run goes on")
+            ->type_name("SECONDS")
+            ->check(CLI::Range(0.0, kMostSeconds))
+            ->needs(save_state);
+    app.add_option("--save-state-every", options.save_every_s,
+                   "with --save-state: save it again and again, after this wall-clock time each; a run that cannot be "
+                   "saved goes on without")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.0, kMostSeconds))
-        ->needs(save_state);
+        ->needs(save_state)
+        ->excludes(save_at);
     app.add_option("--from-state", options.from_state,
                    "go on from the state in this file: same program and configuration, which may end later")
         ->type_name("FILE")

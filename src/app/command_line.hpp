@@ -28,11 +28,12 @@ struct CommandLine {
     std::string firmware;              // that drives robots in the place of the program; empty: none does
     std::optional<int> gdb_port{};     // debug a robot that runs firmware
     std::optional<std::uint32_t> gdb_robot{};
-    std::string save_state;              // file that gets the state of the run; empty: none
-    std::optional<double> save_at_s{};   // absent: at its end
-    std::string from_state;              // file with the state from which the run goes on; empty: it begins anew
-    std::int64_t hash_period_steps = 0;  // 0: no hashes
-    std::vector<std::string> overrides;  // --set, in order
+    std::string save_state;                // file that gets the state of the run; empty: none
+    std::optional<double> save_at_s{};     // absent: at its end
+    std::optional<double> save_every_s{};  // of wall-clock time; absent: once
+    std::string from_state;                // file with the state from which the run goes on; empty: it begins anew
+    std::int64_t hash_period_steps = 0;    // 0: no hashes
+    std::vector<std::string> overrides;    // --set, in order
 };
 
 /// The parsed options; or, after --help, --version or an error, the exit code of the program, once everything has been

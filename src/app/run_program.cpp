@@ -276,6 +276,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
                            .program_name = options.program_name,
                            .save_state = options.save_state,
                            .save_state_at_s = options.save_at_s,
+                           .save_state_every_s = options.save_every_s,
                            .from_state = from_state,
                            .restarted = restarted,
                            .check_restart = [&] { return check_restart(options, folder); }};

@@ -75,6 +75,14 @@ LockedFile::LockedFile(std::filesystem::path const& path)
     throw FileError("other programs keep replacing it");
 }
 
+LockedFile::LockedFile(std::filesystem::path path, int descriptor)
+    : path_(std::move(path)), descriptor_(fcntl(descriptor, F_DUPFD_CLOEXEC, 0)), owner_(getpid()) {
+    if (descriptor_ < 0) {
+        fail_with_errno(errno);
+    }
+    try_lock(descriptor_);
+}
+
 bool LockedFile::open_once() {
     descriptor_ = open(path_.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor_ < 0 && errno == EACCES) {

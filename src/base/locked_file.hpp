@@ -42,6 +42,9 @@ public:
     /// Opens or creates the file for writing. Throws FileError; FileInUse if another run has locked it.
     explicit LockedFile(std::filesystem::path const& path);
 
+    /// Locks an open file that is about to get this path. Throws FileError.
+    LockedFile(std::filesystem::path path, int descriptor);
+
     /// Releases the lock. A file that was made here is removed again unless keep() was called.
     ~LockedFile();
 

@@ -84,6 +84,10 @@ void MessageRecorder::save_if_due() {
     log_->save_if_due();
 }
 
+void MessageRecorder::save() {
+    log_->save();
+}
+
 void MessageRecorder::add_metadata(std::string const& key, std::string const& value) {
     log_->add_metadata(key, value);
 }

@@ -33,6 +33,7 @@ public:
     void record();
 
     void save_if_due();
+    void save();
     void add_metadata(std::string const& key, std::string const& value);
 
     /// Completes the file. Throws OutputError.

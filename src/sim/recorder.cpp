@@ -188,6 +188,9 @@ void Recorder::make_data_file() {
     if (std::string links = LinkRecord::initial(world_); !links.empty()) {
         options.metadata.emplace_back("links", std::move(links));
     }
+    if (rows_before_) {
+        options.metadata.emplace_back("continued_after_rows", fmt::format("{}", *rows_before_));
+    }
     data_file_ = std::make_unique<DataFile>(options, std::move(reserved_));
     note_data_file(options.path, DataFileState::open);
     empty_cells_.assign(options.user_columns.size(), CellValue());
@@ -312,6 +315,9 @@ void Recorder::save_if_due() {
 void Recorder::save_now() {
     if (data_file_) {
         data_file_->save();
+    }
+    if (messages_ && messages_->is_open()) {
+        messages_->save();
     }
 }
 

@@ -30,6 +30,9 @@ public:
     Recorder(Scenario const& scenario, World const& world, Controllers& controllers, Brains const& brains,
              DataExport& data, std::uint32_t seed);
 
+    /// Before open(): the data file goes on behind this number of rows of earlier parts, as its metadata say.
+    void go_on_behind(std::int64_t rows) { rows_before_ = rows; }
+
     /// Lets the program declare its columns and opens the files that are wanted. Throws OutputError.
     std::optional<UserFailure> open();
 
@@ -77,6 +80,9 @@ public:
     /// Rows of the data file so far; none if there is no data file.
     std::optional<std::int64_t> row_count() const;
 
+    /// With those of earlier parts.
+    std::int64_t all_rows() const { return rows_before_.value_or(0) + row_count().value_or(0); }
+
     /// The end of a message about a run that ended early: where its data are. Empty before close() has completed the
     /// file.
     std::string note() const;
@@ -116,7 +122,8 @@ private:
     std::vector<ObjectRow> built_in_;     // of its rows
     std::vector<CellValue> empty_cells_;  // user columns of subparts
     RowTimes row_times_;
-    double row_time_s_ = 0.0;  // that of the last rows
+    double row_time_s_ = 0.0;                    // that of the last rows
+    std::optional<std::int64_t> rows_before_{};  // absent: this is the first part
 };
 
 }  // namespace pogosim

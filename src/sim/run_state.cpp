@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +18,12 @@
 #include "world/saved_world.hpp"
 
 namespace pogosim {
+
+namespace {
+
+constexpr double kPatienceS = 5.0;  // of wall-clock time, in addition
+
+}  // namespace
 
 std::string Simulation::why_never_for_process() const {
     if (observer_) {
@@ -61,6 +68,7 @@ SavedState Simulation::present_state() {
             .time_s = world_.time_s(),
             .hash = hash(),
             .has_ended = services_.stop_requested,
+            .rows = recorder_.all_rows(),
             .state = state.bytes()};
 }
 
@@ -89,8 +97,10 @@ void Simulation::check_states() {
                                       scenario_.simulation_time_s));
     }
     if (std::string const reason = why_never_for_process(); !reason.empty()) {
-        throw ConfigError(fmt::format("--save-state: the state of this run cannot be saved: {}", reason));
+        go_on_unsaved(reason);
+        return;
     }
+    saved_at_ = std::chrono::steady_clock::now();
     state_output_ = std::make_unique<StateOutput>(options_.save_state);
 }
 
@@ -100,9 +110,18 @@ void Simulation::check_saving() {
         try {
             present_state();
         } catch (ConfigError const& error) {
-            throw ConfigError(fmt::format("--save-state: the state of this run cannot be saved: {}", error.what()));
+            go_on_unsaved(error.what());
         }
     }
+}
+
+void Simulation::go_on_unsaved(std::string const& reason) {
+    std::string const message = fmt::format("--save-state: the state of this run cannot be saved: {}", reason);
+    if (!options_.save_state_every_s) {
+        throw ConfigError(message);
+    }
+    log().warn("{}; it goes on without", escaped(message));
+    state_output_.reset();
 }
 
 /// After start(): all of the run becomes what it was, but for what belongs to this process.
@@ -144,30 +163,74 @@ void Simulation::go_on_from(SavedState const& saved) {
     log().info("goes on from '{}' at t = {} s", escaped(saved.file.string()), rounded_to_ns(began_s_));
 }
 
-/// Throws OutputError, and ConfigError.
+/// The rows before it are on the disk before it is. Throws OutputError.
 void Simulation::write_state() {
+    bool const is_last = !options_.save_state_every_s || is_over();
+    recorder_.save_now();
+    saved_at_ = std::chrono::steady_clock::now();
+    is_save_late_ = false;
     try {
         state_output_->write(state_for_process());
     } catch (ConfigError const& error) {
-        lost_state_ = error.what();
+        if (options_.save_state_every_s) {
+            go_on_unsaved(error.what());
+        } else {
+            lost_state_ = error.what();
+        }
+        return;
+    } catch (OutputError const& error) {
+        if (!options_.save_state_every_s) {
+            throw;
+        }
+        log().warn("{}", escaped(error.what()));
         return;
     }
-    log().info("the state of t = {} s is in '{}': go on with --from-state", rounded_to_ns(world_.time_s()),
-               escaped(options_.save_state));
-    state_output_.reset();
+    constexpr auto kSaved = "the state of t = {} s is in '{}': go on with --from-state";
+    if (is_last) {
+        log().info(kSaved, rounded_to_ns(world_.time_s()), escaped(options_.save_state));
+        state_output_.reset();
+    } else {
+        log().debug(kSaved, rounded_to_ns(world_.time_s()), escaped(options_.save_state));
+    }
+}
+
+bool Simulation::is_state_due() const {
+    if (!state_output_) {
+        return false;
+    }
+    if (options_.save_state_every_s) {
+        return std::chrono::steady_clock::now() - saved_at_ >=
+               std::chrono::duration<double>(*options_.save_state_every_s);
+    }
+    return options_.save_state_at_s &&
+           world_.time_s() >= *options_.save_state_at_s - kWholeTolerance * world_.time_step_s;
 }
 
 /// Where a robot waits in the middle of its program, a later step is taken.
 void Simulation::save_state_if_due() {
-    if (!state_output_ || !options_.save_state_at_s ||
-        world_.time_s() < *options_.save_state_at_s - kWholeTolerance * world_.time_step_s) {
+    if (!is_state_due()) {
         return;
     }
     if (why_not_now_for_process().empty()) {
         write_state();
-    } else if (!std::exchange(is_save_late_, true)) {
-        log().info("--save-state: at t = {} s, {}: the state is that of the first step without",
-                   rounded_to_ns(world_.time_s()), why_not_now_for_process());
+    } else {
+        tell_of_late_state();
+    }
+}
+
+/// That robots wait for some steps is usual; where a state is due again, they may wait at all times.
+void Simulation::tell_of_late_state() {
+    std::string const reason = why_not_now_for_process();
+    if (!options_.save_state_every_s) {
+        if (!std::exchange(is_save_late_, true)) {
+            log().info("--save-state: at t = {} s, {}: the state is that of the first step without",
+                       rounded_to_ns(world_.time_s()), reason);
+        }
+        return;
+    }
+    std::chrono::duration<double> const since = std::chrono::steady_clock::now() - saved_at_;
+    if (since.count() >= 2.0 * *options_.save_state_every_s + kPatienceS && !std::exchange(is_save_late_, true)) {
+        log().warn("--save-state: no state could be saved for {:.0f} s: {}", since.count(), reason);
     }
 }
 
@@ -175,10 +238,17 @@ void Simulation::save_state_at_end() {
     if (!state_output_ || restart()) {
         return;
     }
-    if (std::string const reason = why_not_now_for_process(); !reason.empty()) {
-        lost_state_ = fmt::format("at t = {} s, {}", rounded_to_ns(world_.time_s()), reason);
-    } else {
+    std::string const reason = why_not_now_for_process();
+    if (reason.empty()) {
         write_state();
+        return;
+    }
+    std::string const message = fmt::format("at t = {} s, {}", rounded_to_ns(world_.time_s()), reason);
+    if (!options_.save_state_every_s) {
+        lost_state_ = message;
+    } else if (interrupted()) {
+        log().warn("--save-state: {}: the state in '{}' is an earlier one, or there is none", message,
+                   escaped(options_.save_state));
     }
 }
 

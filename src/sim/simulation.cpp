@@ -379,6 +379,9 @@ std::optional<UserFailure> Simulation::start() {
     warn_of_ambiguous_rows(scenario_, world_);
     warn_of_rounded_speeds(scenario_, world_);
     check_saving();
+    if (options_.from_state) {
+        recorder_.go_on_behind(options_.from_state->rows);
+    }
     if (auto failure = recorder_.open()) {
         return failure;
     }

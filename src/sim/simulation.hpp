@@ -1,6 +1,7 @@
 // A whole run: a world, the stages that change it, and the recorder.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,6 +67,7 @@ struct RunOptions {
     std::string program_name{};                      // for the window's title
     std::string save_state{};                        // file that gets the state; empty: none
     std::optional<double> save_state_at_s{};         // absent: at the end of the run
+    std::optional<double> save_state_every_s{};      // of wall-clock time, where it can be saved; absent: once
     std::shared_ptr<SavedState const> from_state{};  // from which the run goes on; null: it begins anew
     std::optional<Restart> restarted{};              // by the user, in the window of the run before
     std::function<RestartCheck()> check_restart = [] { return RestartCheck{}; };  // see WindowSetup
@@ -246,6 +248,10 @@ private:
     SavedState present_state();
     void go_on_from(SavedState const& saved);
     void save_state_if_due();
+    bool is_state_due() const;
+    void tell_of_late_state();
+    /// Throws ConfigError without save_state_every_s.
+    void go_on_unsaved(std::string const& reason);
     void save_state_at_end();
     void write_state();
     std::optional<UserFailure> call_brains(bool (Brain::*part)());
@@ -292,6 +298,7 @@ private:
     std::unique_ptr<WindowDriver> window_;                     // null without a window
     std::unique_ptr<StateOutput> state_output_;                // null: no state is saved, or it was
     bool is_save_late_ = false;                                // the state is due, and a robot waits
+    std::chrono::steady_clock::time_point saved_at_{};         // with save_state_every_s: when that was done last
     std::string lost_state_{};                                 // why it could not be saved
     double began_s_ = 0.0;                                     // when this process took the run over
     bool leaves_archive_ = false;                              // of flash memory as it is

@@ -274,8 +274,10 @@ void StateOutput::write(SavedState const& saved) {
     try {
         NewFile file(reserved_.path());
         write_all(file.descriptor(), text_of(all));
+        LockedFile written(reserved_.path(), file.descriptor());  // before another run can see it
         file.replace(reserved_);
         reserved_.keep();
+        reserved_ = std::move(written);
     } catch (FileError const& failure) {
         throw OutputError(
             fmt::format("--save-state: cannot write '{}': {}. It is as before", name_.string(), failure.what()));

@@ -46,11 +46,12 @@ struct SavedState {
     double time_s = 0.0;
     std::uint64_t hash = 0;  // of the run, see state_hash.hpp
     bool has_ended = false;  // by its program
+    std::int64_t rows = 0;   // of its data file so far, with those of earlier parts
     std::vector<std::byte> state{};
 
     template <class Self, class State>
     static void visit_state(Self& self, State& state) {
-        state(self.identity, self.seed, self.time_s, self.hash, self.has_ended, self.state);
+        state(self.identity, self.seed, self.time_s, self.hash, self.has_ended, self.rows, self.state);
     }
 };
 

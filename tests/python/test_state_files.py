@@ -7,6 +7,7 @@ import re
 import shutil
 import signal
 import textwrap
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import pandas as pd
 import pytest
 import yaml
 from firmwares import OF_ROBOTS, firmware_of, text, without_program
+from pogosim.recover import read_unfinished
 from pogosim.utils import load_dataframe
 from running import ROOT, Run, Settings, compile_text, example, run, run_command, start, wait_for_rows, write_scene
 
@@ -274,6 +276,81 @@ def test_robots_that_wait_at_the_end_are_an_error_and_the_rows_are_complete(tmp_
     assert "--save-state: 'x' was not written: at t = 2 s, a robot waits in the middle of its program" in result.errors
     assert result.frame().time.max() == 2.0
     assert not (tmp_path / "x").exists()
+
+
+# Again and again.
+
+
+def test_killed_run_goes_on_from_its_last_state(tmp_path: Path) -> None:
+    """Also one that went on itself. Rows after the state are those that are written again."""
+    program = program_of(tmp_path / "program")
+    settings = {"simulation_time": 1e6, "save_data_period": 0.1}
+    folder, chance = tmp_path / "parts", random.Random(3)
+    for part in range(4):
+        before_s = (folder / "x").stat().st_mtime if part else 0.0
+        going_on = ["--from-state", "x"] if part else []
+        process = start(program, folder, settings, ["--save-state", "x", "--save-state-every", "0.02", *going_on])
+        wait_for_state(folder / "x", before_s)
+        time.sleep(chance.uniform(0.0, 0.2))
+        process.kill()
+        process.communicate(timeout=60)
+    end_s = float(read_unfinished(folder / "data.feather").table.to_pandas().time.max()) + 3
+    last = run(program, folder, {**settings, "simulation_time": end_s}, ["--from-state", "x"])
+    assert last.code == 0, last.text
+    whole = run(program, tmp_path / "whole", {**settings, "simulation_time": end_s}).frame()
+    parts = [read_unfinished(folder / f"data.{number}.feather").table for number in range(1, 5)]
+    parts.append(last.table())
+    firsts = [int((part.schema.metadata or {}).get(b"continued_after_rows", b"0")) for part in parts]
+    assert firsts == sorted(firsts)
+    assert firsts[1] > 0
+    for i, (part, first) in enumerate(zip(parts, firsts, strict=True)):
+        rows = part.to_pandas()
+        pd.testing.assert_frame_equal(rows, whole[first : first + len(rows)].reset_index(drop=True))
+        following = firsts[i + 1] if i + 1 < len(parts) else len(whole)
+        assert first + len(rows) >= following  # rows are on the disk before the state is
+
+
+def wait_for_state(file: Path, newer_than_s: float) -> None:
+    """Wait until a state has been written."""
+    for _ in range(6000):
+        if file.exists() and file.stat().st_size > 0 and file.stat().st_mtime > newer_than_s:
+            return
+        time.sleep(0.01)
+    raise AssertionError(f"{file} was not written")
+
+
+def test_run_that_cannot_be_saved_goes_on_if_states_are_wanted_on_the_way(tmp_path: Path) -> None:
+    every = ["--save-state", "x", "--save-state-every", "0"]
+    waits = program_of(tmp_path / "waits", "msleep(300);")
+    result = run(waits, tmp_path / "run", {}, every)
+    assert result.code == 0, result.text
+    assert result.frame().time.max() == 2.0
+    allocates = program_of(
+        tmp_path / "allocates",
+        "if (!numbers) { numbers = malloc(100); } numbers[0]++;",
+        globals_="#include <stdlib.h>\nstatic int *numbers = NULL;",
+    )
+    result = run(allocates, tmp_path / "run", {}, every)
+    assert result.code == 0
+    assert "the program allocates memory ('malloc')" in result.errors
+    assert "it goes on without" in result.errors
+    assert not (tmp_path / "run" / "x").exists()
+    result = run(allocates, tmp_path / "run", {}, [*every, "--at", "1"])
+    assert result.code == 2
+
+
+def test_two_runs_cannot_write_one_state_after_it_was_written(tmp_path: Path) -> None:
+    program = program_of(tmp_path / "program")
+    every = ["--save-state", "../x", "--save-state-every", "0"]
+    process = start(program, tmp_path / "first", {"simulation_time": 1e6}, every)
+    try:
+        wait_for_state(tmp_path / "x", 0.0)
+        result = run(program, tmp_path / "second", {}, every)
+        assert result.code == 2
+        assert "--save-state: cannot write '../x': in use by another run" in result.errors
+    finally:
+        process.kill()
+        process.communicate(timeout=60)
 
 
 # What cannot be saved.
