@@ -78,10 +78,13 @@ void Simulation::check_states() {
         SavedState const& saved = *options_.from_state;
         check_identity(saved, identity_of(controllers_.image(), scenario_, world_));
         std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
-        if (saved.has_ended) {
+        // A run that was killed at its very end has nothing left to do.
+        bool const may_be_over = options_.save_state_every_s.has_value();
+        if (saved.has_ended && !may_be_over) {
             throw ConfigError(time + ", when its program ended the run: there is nothing to go on with");
         }
-        if (saved.time_s >= scenario_.simulation_time_s) {
+        double const most_s = scenario_.simulation_time_s + (may_be_over ? world_.time_step_s : 0.0);
+        if (saved.time_s >= most_s) {
             throw ConfigError(fmt::format("{}, and simulation_time is {} s: set a longer one (--set simulation_time=)",
                                           time, scenario_.simulation_time_s));
         }
@@ -146,7 +149,7 @@ void Simulation::go_on_from(SavedState const& saved) {
     world_.light.level = levels;
     lighting_.forget_map();
     services_.are_lines_hidden = false;
-    services_.stop_requested = false;
+    services_.stop_requested = saved.has_ended;
     began_s_ = world_.time_s();
     if (observed_motions_) {
         observed_motions_->update(world_);

@@ -310,6 +310,19 @@ def test_killed_run_goes_on_from_its_last_state(tmp_path: Path) -> None:
         assert first + len(rows) >= following  # rows are on the disk before the state is
 
 
+@pytest.mark.parametrize("step", [WANDER, WANDER + "if (mydata->count > 3000) { stop_simulation(); }"])
+def test_run_that_was_killed_at_its_very_end_ends_again_at_once(step: str, tmp_path: Path) -> None:
+    program = program_of(tmp_path / "program", step)
+    every = ["--save-state", "x", "--save-state-every", "0.1"]
+    whole = run(program, tmp_path, {}, every)
+    assert whole.code == 0, whole.text
+    rows = len(whole.frame())
+    again = run(program, tmp_path, {}, [*every, "--from-state", "x"])
+    assert again.code == 0, again.text
+    assert len(again.frame()) == 0
+    assert again.table().schema.metadata[b"continued_after_rows"] == b"%d" % rows
+
+
 def wait_for_state(file: Path, newer_than_s: float) -> None:
     """Wait until a state has been written."""
     for _ in range(6000):
