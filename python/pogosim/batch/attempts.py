@@ -14,20 +14,23 @@ import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import IO
 
-from pogosim.batch.errors import reason
+from pogosim.batch.errors import BatchError, reason
 from pogosim.batch.identity import PYTHON, find_program
 from pogosim.batch.run import FRAMES, Outcome, Task
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.run_log import CONFIGURATION, LOG, OWN, tail, warnings_in, with_last_line
 from pogosim.batch.run_server import ServerLostError
-from pogosim.batch.simulators import simulators
+from pogosim.batch.saved_runs import FROM_OUTSIDE, SavedRun, folder_of, held
+from pogosim.batch.simulators import Saving, simulators
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.firmware import is_firmware
 from pogosim.installation import InstallationError, find_installation
 
 REFUSED = 2  # exit code of a program that refuses its configuration, or cannot write its files
 IN_A_FILE = re.compile(r"Error: [^\s,]+:\d+: ")  # of a robot model, a script, an arena
+REFUSED_STATE = re.compile(r"Error: (--from-state: .*)")
 DISK_FULL = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))
 
 
@@ -65,6 +68,8 @@ def attempt(task: Task, number: int) -> Outcome:
         OSError: A file cannot be written, or the program not be started.
         StoppedError: The batch ends.
     """
+    if task.settings.saves_states:
+        return attempt_in_parts(task, number)
     # A run that has failed in a process of its own is repeated in one.
     is_first = number == 0 and task.settings.may_share_process
     outcome = attempt_in_server(task, number) if is_first else None
@@ -124,7 +129,78 @@ def attempt_alone(task: Task, number: int) -> Outcome:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFIGURATION) -> Outcome:
+def attempt_in_parts(task: Task, number: int) -> Outcome:
+    """Do a run once, from its state if there is one, and keep its data file; see `attempt_from_state`.
+
+    Raises:
+        OSError: A file cannot be written, or the program not be started.
+        StoppedError: The batch ends; the state stays.
+    """
+    folder = folder_of(task, number)
+    with held(folder) as its_lock:
+        if its_lock is None:
+            return attempt_alone(task, number)
+        saved = SavedRun(folder, task, number)
+        outcome = attempt_from_state(saved, its_lock)
+        is_kept = task.settings.temporary.is_kept
+        if outcome.file is not None:
+            result = task.result_of(outcome.file.retry_attempt)
+            keep(outcome.file.path, result, as_copy=is_kept)
+            outcome = replace(outcome, file=replace(outcome.file, path=result))
+            saved.finish()
+            if not is_kept:
+                shutil.rmtree(folder, ignore_errors=True)
+        return replace(outcome, folder=str(folder) if is_kept or outcome.problem else "")
+
+
+def attempt_from_state(saved: SavedRun, its_lock: IO[bytes], configuration: str = CONFIGURATION) -> Outcome:
+    """Do a run once, in its folder, from its state if there is one.
+
+    A run that is ended from outside goes on; one that fails by itself begins anew the next time. So does, at once, one
+    whose state does not fit, or whose earlier rows are missing.
+
+    Raises:
+        OSError: A file cannot be written, or the program not be started.
+        StoppedError: The batch ends; the state stays.
+    """
+    said = ""
+    simulator_s = 0.0
+    while True:
+        if not saved.has_state:
+            if saved.others():
+                said += "the state in its folder is of another run, so the run begins anew\n"
+            saved.begin()
+        goes_on, before_ns = saved.has_state, saved.saved_at_ns
+        outcome = attempt_in(
+            saved.folder, saved.task, saved.number, configuration, Saving(tuple(saved.arguments()), its_lock, goes_on)
+        )
+        simulator_s += outcome.simulator_s
+        if goes_on and (refused := REFUSED_STATE.search(outcome.log)):
+            said += f"{refused[1]}; so the run begins anew\n"
+        elif outcome.code in FROM_OUTSIDE and saved.saved_at_ns != before_ns:
+            continue
+        elif outcome.problem:
+            if outcome.code not in FROM_OUTSIDE and not outcome.is_fatal:
+                saved.state.unlink(missing_ok=True)
+            break
+        elif not goes_on:
+            break
+        else:
+            try:
+                saved.join()
+                file = saved.task.read(saved.data, saved.task.replacement_in(saved.number))
+                outcome = replace(outcome, file=file, problem="" if file else "its data file is damaged")
+                break
+            except BatchError as error:
+                said += f"{error}; so the run begins anew\n"
+        saved.state.unlink(missing_ok=True)
+    log = outcome.log if outcome.problem else "\n".join(filter(None, (said.rstrip(), outcome.log)))
+    return replace(outcome, log=log, simulator_s=simulator_s)
+
+
+def attempt_in(
+    folder: Path, task: Task, number: int, configuration: str = CONFIGURATION, saving: Saving | None = None
+) -> Outcome:
     """Do a run once, in a folder, where its configuration, its log and its outputs stay.
 
     Args:
@@ -132,6 +208,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
         task: The run.
         number: Number of the attempt, from 0 on.
         configuration: Name of its configuration.
+        saving: How its state is saved; None: it is not.
 
     Raises:
         OSError: A file cannot be written, or the program not be started.
@@ -142,7 +219,8 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
     path.write_text(configuration_in(task, folder / FRAMES))
     settings = task.settings
     command = [*starting(str(settings.program)), *arguments_of(task, number, str(path))]
-    code, simulator_s = simulators.run(command, folder, settings)
+    more = saving.arguments if saving is not None else ()
+    code, simulator_s = simulators.run([*command, *more], folder, settings, saving)
     data = folder / FRAMES / task.data
     problem, is_fatal, is_certain = "", False, False
     file, log = None, ""
@@ -170,6 +248,7 @@ def attempt_in(folder: Path, task: Task, number: int, configuration: str = CONFI
         command=shlex.join(command),
         log=log,
         simulator_s=simulator_s,
+        code=code,
     )
 
 
@@ -232,7 +311,7 @@ def do_run(task: Task) -> Outcome:
     temporary, outcome = task.settings.temporary, Outcome(task.key)
     simulator_s, first_problem = 0.0, ""
     for number in range(task.retries + 1):
-        if outcome.folder and not temporary.is_kept:
+        if outcome.folder and not (temporary.is_kept or task.settings.saves_states):
             shutil.rmtree(outcome.folder, ignore_errors=True)
         try:
             outcome = attempt(task, number)

@@ -79,6 +79,7 @@ def run_local_campaign(
     gui: bool = False,
     simulator_output: str = "normal",
     only_output: str | None = None,
+    save_states: float | None = None,
 ) -> LocalCampaignResult:
     """Run a program with every combination of the options in a configuration, once for each seed.
 
@@ -102,6 +103,8 @@ def run_local_campaign(
         simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
             robots also print what they usually do into the logs of their runs.
         only_output: Do only combinations whose results have this name, or path.
+        save_states: Save the state of each run after this wall-clock time each, in s: the same call goes on from there
+            when it was ended. None: never.
 
     Raises:
         BatchError: It cannot be done. The message is one line.
@@ -116,6 +119,7 @@ def run_local_campaign(
         backend=backend,
         keep_temp=keep_temp,
         isolated=isolated,
+        save_states=save_states,
         retries=retries,
         gui=gui,
         only_output=only_output or "",

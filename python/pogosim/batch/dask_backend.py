@@ -70,12 +70,19 @@ def dask(workers: int, scheduler: str | None) -> Iterator[Callable[[Sequence[Tas
         yield lambda tasks: outcomes_of(tasks, client)
     finally:
         with contextlib.suppress(Exception):
-            client.run(close_servers)  # in workers that stay
+            # Those of a scheduler stay, and may do runs of other batches.
+            client.run(close_servers if cluster is None else end_simulators)
         with contextlib.suppress(Exception):
             client.close(timeout=5)
         if cluster is not None:
             with contextlib.suppress(Exception):
                 cluster.close(timeout=5)
+
+
+def end_simulators() -> None:
+    """End all simulators of a worker that ends."""
+    simulators.stop()
+    simulators.close()
 
 
 def close_servers() -> None:

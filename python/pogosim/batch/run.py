@@ -33,6 +33,7 @@ class RunSettings:
     retry_new_seed: bool = False  # a run that failed is repeated with another seed
     says: tuple[str, ...] = QUIET
     is_isolated: bool = False  # each run is a process of its own
+    save_every_s: float | None = None  # of wall-clock time, its state, to go on from after an end; None: never
     working_folder: Path = field(default_factory=Path.cwd)
     models_path: str = field(default_factory=lambda: models_path(log.warning))  # folders, as in POGOSIM_PATH
 
@@ -56,7 +57,13 @@ class RunSettings:
     @property
     def may_share_process(self) -> bool:
         """Whether several runs may be done by one process."""
-        return not (self.is_isolated or self.gui or self.temporary.is_kept or self.program.suffix == PYTHON)
+        is_alone = self.is_isolated or self.gui or self.saves_states
+        return not (is_alone or self.temporary.is_kept or self.program.suffix == PYTHON)
+
+    @property
+    def saves_states(self) -> bool:
+        """Whether a run that is ended goes on later from its state; a Python file has its own command line."""
+        return self.save_every_s is not None and self.program.suffix != PYTHON
 
 
 @dataclass(frozen=True)
@@ -124,3 +131,4 @@ class Outcome:
     log: str = ""  # its last lines; of a run that is done, its warnings
     folder: str = ""  # what a failure leaves
     simulator_s: float = 0.0  # wall-clock time of its simulators
+    code: int = 0  # with which its simulator has ended, or minus the signal

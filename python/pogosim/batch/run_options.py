@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from pogosim.batch.runner import PogobotBatchRunner
 
+MOST_SECONDS = 1e6  # between states
+
 DONE = 0
 NO_SUCH_OUTPUT = 1
 WRONG = 2
@@ -82,9 +84,37 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
     add_jobqueue_options(options)
     add("--keep-temp", action="store_true", help="keep the folders of single runs")
     add("--isolated", action="store_true", help=ISOLATED)
+    add_saving_option(options)
     add("--gui", action="store_true", help="let each run open its window")
     add("--progress", action="store_true", help="say how many runs are done, also where there is no terminal")
     add("-v", "--verbose", action="store_true", help="also say tasks, rows, and which runs failed")
+
+
+SAVE_EVERY_S = 60.0
+
+
+def add_saving_option(options: argparse.ArgumentParser) -> None:
+    """Add what says whether runs that were ended go on."""
+    options.add_argument(
+        "--save-states",
+        type=float,
+        nargs="?",
+        const=SAVE_EVERY_S,
+        metavar="SECONDS",
+        help="save the state of each run this often, in wall-clock time (60 s), and when it is ended: the same command "
+        "goes on from there",
+    )
+
+
+def checked_period(save_states: float) -> float:
+    """Return how often states are saved, in s.
+
+    Raises:
+        BatchError: It is no time.
+    """
+    if not 0.0 <= save_states <= MOST_SECONDS:
+        raise BatchError(f"--save-states: expected a time from 0 to {MOST_SECONDS:.0f} s; found {save_states:g}")
+    return float(save_states)
 
 
 def add_retry_options(options: argparse.ArgumentParser) -> None:
@@ -213,4 +243,5 @@ def runner_of(arguments: argparse.Namespace, is_campaign: bool) -> PogobotBatchR
         with_seeds=is_campaign,
         progress=arguments.progress,
         isolated=arguments.isolated,
+        save_states=arguments.save_states,
     )

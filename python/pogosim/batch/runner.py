@@ -22,7 +22,8 @@ from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, ne
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
-from pogosim.batch.run import QUIET, RunSettings
+from pogosim.batch.run import QUIET, RunSettings, Task
+from pogosim.batch.run_options import checked_period
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
@@ -74,6 +75,8 @@ class PogobotBatchRunner:
         isolated: Each run is a process of its own; else, one process may do many, one after the other.
         simulator_output: "normal": warnings of simulators are shown; "quiet": they are not; "verbose": simulators and
             robots also print what they usually do into the logs of their runs, which stay with `keep_temp`.
+        save_states: Save the state of each run after this wall-clock time each, in s, and when the batch is ended: the
+            same batch goes on from there. None: runs that have not ended begin anew.
 
     Attributes:
         failures: Runs of the last `run_all()` that failed.
@@ -111,6 +114,7 @@ class PogobotBatchRunner:
         progress: bool = False,
         isolated: bool = False,
         simulator_output: str = "normal",
+        save_states: float | None = None,
     ) -> None:
         self.multi_config_file = str(given.path("multi_config_file", multi_config_file))
         self.runs = 0
@@ -139,6 +143,7 @@ class PogobotBatchRunner:
         self.layout = OF_CAMPAIGNS if with_seeds else PLAIN
         self.progress = progress
         self.simulator_output = simulator_output
+        self.save_states = None if save_states is None else checked_period(save_states)
         self.failures: list[Failure] = []
         self.replaced: list[Replaced] = []
         self.simulator_s = 0.0
@@ -317,6 +322,8 @@ class PogobotBatchRunner:
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
+        if self.save_states is not None:
+            self.tell_of_states(waiting)
         with self.workers.opened() as do:
             outcomes = do(waiting)
             if not done:
@@ -333,6 +340,23 @@ class PogobotBatchRunner:
         report_failures(self.failures)
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
+
+    def tell_of_states(self, waiting: Sequence[Task]) -> None:
+        """Say which runs go on, and which cannot."""
+        if self.run_settings is not None and not self.run_settings.saves_states:
+            log.warning("--save-states: %s is a Python file, whose runs cannot be saved", self.simulator_binary)
+            return
+        keys = {task.key for task in waiting}
+        found = self.temporary.saved_runs()
+        going_on = sum(name.partition("_")[0] in keys for name in found)
+        if going_on:
+            tell(f"{going_on} of {len(waiting)} runs go on from their states, in {self.temporary.saved}")
+        if others := len(found) - going_on:
+            log.warning(
+                "%d states in %s are of runs with another configuration, program or seed: nothing goes on from them",
+                others,
+                self.temporary.saved,
+            )
 
     # ---- Its parts ----
 
@@ -358,6 +382,7 @@ class PogobotBatchRunner:
             retry_new_seed=self.retry_new_seed,
             says=SIMULATOR_OUTPUTS[self.simulator_output],
             is_isolated=self.workers.is_isolated,
+            save_every_s=self.save_states,
         )
         with self.temporary.locked():
             self.temporary.remove_leftovers()

@@ -26,6 +26,7 @@ class Running:
 
     process: subprocess.Popen[bytes]
     log: Path
+    saves_state: bool = False  # when it is asked to end
     started_s: float = field(default_factory=time.monotonic)
 
 
@@ -44,9 +45,9 @@ class Watch:
         self.last_end_s = time.monotonic()
         self.silence_s = FIRST_LINE_S
 
-    def add(self, process: subprocess.Popen[bytes], log_file: Path) -> Running:
+    def add(self, process: subprocess.Popen[bytes], log_file: Path, saves_state: bool = False) -> Running:
         """Take a simulator that has started."""
-        running = Running(process, log_file)
+        running = Running(process, log_file, saves_state)
         with self.lock:
             self.running.add(running)
             if self.thread is None:

@@ -11,16 +11,29 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from shutil import which
+from typing import IO
 
 from pogosim.batch.run import RunSettings
 from pogosim.batch.run_log import LOG
 from pogosim.batch.run_server import VARIABLE, NotServedError, RunServer, RunServers, ServerLostError
-from pogosim.batch.running import Watch
+from pogosim.batch.running import Running, Watch
+
+SAVING_S = 10.0  # for the states of runs when the batch ends; batch systems wait 30 s for it
 
 # Dies with the thread that starts it, whatever ends that one; and starts nothing if that has happened already.
 WATCHED = ("setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] && exec "$@"')
+
+
+@dataclass(frozen=True)
+class Saving:
+    """What a simulator that saves states is given in addition."""
+
+    arguments: tuple[str, ...]
+    lock: IO[bytes]  # of the folder, as long as the simulator lives
+    goes_on: bool  # the log does, too
 
 
 class StoppedError(Exception):
@@ -42,13 +55,16 @@ class Simulators:
         self.watch.begin()
         self.slots = threading.BoundedSemaphore(at_once)
 
-    def run(self, command: Sequence[str], folder: Path, settings: RunSettings) -> tuple[int, float]:
+    def run(
+        self, command: Sequence[str], folder: Path, settings: RunSettings, saving: Saving | None = None
+    ) -> tuple[int, float]:
         """Run a program to its end, in a process of its own.
 
         Args:
             command: Its command line.
             folder: The folder of the run, where its log is written.
             settings: What all runs have in common.
+            saving: How it saves its state; None: it does not.
 
         Returns:
             Its exit code, or minus the signal that ended it; and its wall-clock time in s.
@@ -59,14 +75,14 @@ class Simulators:
         """
         with self.slots:
             started_s = time.monotonic()
-            code = self.run_now(command, folder / LOG, settings)
+            code = self.run_now(command, folder / LOG, settings, saving)
             return code, time.monotonic() - started_s
 
-    def run_now(self, command: Sequence[str], log: Path, settings: RunSettings) -> int:
+    def run_now(self, command: Sequence[str], log: Path, settings: RunSettings, saving: Saving | None = None) -> int:
         """Do what `run` does, at once; returns the exit code."""
         if self.is_stopping:
             raise StoppedError
-        with log.open("wb") as output:
+        with log.open("ab" if saving is not None and saving.goes_on else "wb") as output:
             process = subprocess.Popen(
                 [*watch(), *command],
                 cwd=settings.working_folder,
@@ -75,11 +91,14 @@ class Simulators:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,  # Ctrl-C reaches the batch alone
+                pass_fds=() if saving is None else (saving.lock.fileno(),),
             )
         try:
-            with self.running(process, log):
+            with self.running(process, log, saves_state=saving is not None):
                 code = process.wait()
         except BaseException:
+            if saving is not None:
+                ask_to_end(process)
             end(process)
             raise
         if self.is_stopping:
@@ -121,9 +140,9 @@ class Simulators:
                 self.servers.give_back(server)
 
     @contextlib.contextmanager
-    def running(self, process: subprocess.Popen[bytes], log: Path) -> Iterator[None]:
+    def running(self, process: subprocess.Popen[bytes], log: Path, saves_state: bool = False) -> Iterator[None]:
         """Let a process run meanwhile; it is killed if the batch ends."""
-        running = self.watch.add(process, log)
+        running = self.watch.add(process, log, saves_state)
         try:
             if self.is_stopping:
                 kill(process)
@@ -132,11 +151,23 @@ class Simulators:
             self.watch.remove(running)
 
     def stop(self) -> None:
-        """End all simulators, and let none begin."""
+        """End all simulators, and let none begin. Those that save states have some time for it."""
         self.is_stopping = True
         with self.watch.lock:
+            saving = [running for running in self.watch.running if running.saves_state]
             for running in self.watch.running:
-                kill(running.process)
+                kill(running.process, signal.SIGTERM if running.saves_state else signal.SIGKILL)
+        if saving:
+            timer = threading.Timer(SAVING_S, self.kill_all, [saving])
+            timer.daemon = True
+            timer.start()
+
+    def kill_all(self, those: Sequence[Running]) -> None:
+        """Kill simulators that still run."""
+        with self.watch.lock:
+            for running in those:
+                if running in self.watch.running:
+                    kill(running.process)
 
     def close(self) -> None:
         """End what waits for runs."""
@@ -152,10 +183,17 @@ def without(variable: str) -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != variable}
 
 
-def kill(process: subprocess.Popen[bytes]) -> None:
-    """End a program and what it has started."""
+def kill(process: subprocess.Popen[bytes], number: signal.Signals = signal.SIGKILL) -> None:
+    """End a program and what it has started, by a signal."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
+        os.killpg(process.pid, number)
+
+
+def ask_to_end(process: subprocess.Popen[bytes]) -> None:
+    """Let a program save its state, if it does not take long."""
+    kill(process, signal.SIGTERM)
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(SAVING_S)
 
 
 def end(process: subprocess.Popen[bytes]) -> None:

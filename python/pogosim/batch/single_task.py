@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.attempts import attempt_in
+from pogosim.batch.attempts import attempt_from_state, attempt_in
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program, program_digest
@@ -22,6 +23,8 @@ from pogosim.batch.results import check_columns
 from pogosim.batch.run import FRAMES, Outcome, RunSettings, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.run_log import EFFECTIVE, with_last_line
+from pogosim.batch.run_options import checked_period
+from pogosim.batch.saved_runs import SavedRun, held
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
@@ -29,6 +32,8 @@ from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, SEED
 from pogosim.table_metadata import parse_configuration
+
+log = logging.getLogger("pogobatch")
 
 WHICH_RUN = ("seed", "result_filename", "extra_columns")  # entries of a manifest that tell runs in a folder apart
 
@@ -111,6 +116,7 @@ def execute_task(
     retry_attempt: int = 0,
     gui: bool = False,
     force: bool = False,
+    save_states: float | None = None,
 ) -> TaskArtifact:
     """Do one run in a folder: `pogobatch_effective.yaml`, `log.txt`, `frames/`, and at the end `pogobatch_task.json`.
 
@@ -124,6 +130,8 @@ def execute_task(
         retry_attempt: Which attempt this is, from 0 on, for the column `retry_attempt`.
         gui: Let the run open its window.
         force: Replace another run, too.
+        save_states: Save the state of the run in the folder after this wall-clock time each, in s, and when it is
+            ended: the same call goes on from there. None: never.
 
     Raises:
         BatchError: It cannot be done, or another run is in the folder.
@@ -139,17 +147,20 @@ def execute_task(
         name, columns = file_name(entries), new_columns(entries)
     check_logs_data(entries, configuration)
     folder = given.path("output_dir", output_dir)
-    task = task_in(folder, configuration, entries, program, seed, run_index, gui)
+    task = task_in(folder, configuration, entries, program, seed, run_index, gui, save_states)
     combination = Combination("", columns, entries, [task], name)
     manifest = task_entries(combination, task, 0, 0, entries.get(CHOICES, {})) | {"retry_attempt": retry_attempt}
     if not force:
         refuse_another_run(folder, manifest)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for left in (TASK, f"{FRAMES}/{task.data}"):
-            (folder / left).unlink(missing_ok=True)
+        (folder / TASK).unlink(missing_ok=True)
         simulators.begin(1)
-        outcome = attempt_in(folder.absolute(), task, retry_attempt, EFFECTIVE)
+        if task.settings.saves_states:
+            outcome = saving_states(folder.absolute(), task, retry_attempt)
+        else:
+            (folder / FRAMES / task.data).unlink(missing_ok=True)
+            outcome = attempt_in(folder.absolute(), task, retry_attempt, EFFECTIVE)
     except OSError as error:
         raise cannot("use", error.filename or folder, error) from None
     if outcome.file is None:
@@ -158,6 +169,25 @@ def execute_task(
     check_columns(outcome.file.schema, list(columns), program, WITH_SEEDS)
     write_json(folder / TASK, manifest)
     return TaskArtifact(folder, manifest)
+
+
+def saving_states(folder: Path, task: Task, number: int) -> Outcome:
+    """Do the run, from its state if there is one.
+
+    Raises:
+        BatchError: Another process does it.
+        OSError: A file cannot be written, or the program not be started.
+    """
+    with held(folder) as its_lock:
+        if its_lock is None:
+            raise BatchError(f"another process does a run in {folder}; wait for it, or choose another folder with -o")
+        saved = SavedRun(folder, task, number)
+        outcome = attempt_from_state(saved, its_lock, EFFECTIVE)
+        if outcome.file is not None:
+            saved.finish()
+        for line in outcome.log.splitlines() if outcome.file is not None else ():
+            log.warning("%s", line)
+        return outcome
 
 
 def refuse_another_run(folder: Path, manifest: Mapping[str, Any]) -> None:
@@ -182,11 +212,13 @@ def task_in(
     seed: int,
     run_index: int,
     gui: bool,
+    save_states: float | None = None,
 ) -> Task:
     """Return a run whose files are in a folder."""
     path = find_program(program)
     temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
     beside = configuration.path.absolute().parent
-    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui)
+    every_s = None if save_states is None else checked_period(save_states)
+    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui, save_every_s=every_s)
     (task,) = tasks_of(entries, [seed], settings, {})
     return replace(task, run=run_index)

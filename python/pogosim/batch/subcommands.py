@@ -15,6 +15,7 @@ from pogosim.batch.run_options import (
     Parser,
     add_choice_options,
     add_run_options,
+    add_saving_option,
     check_names,
     give_program,
     runner_of,
@@ -111,6 +112,7 @@ def add_task_options(options: Parser) -> None:
     add("-o", "--output-dir", metavar="FOLDER", required=True, help="folder of the run")
     add("--run-index", type=int, default=0, metavar="N", help="its number, for the column run (%(default)s)")
     add("--retry-attempt", type=int, default=0, metavar="N", help="which attempt this is (%(default)s)")
+    add_saving_option(options)
     add("--gui", action="store_true", help="let the run open its window")
     add("--force", action="store_true", help="replace another run that is in the folder")
     add("--json", action="store_true", help="print what was done as JSON, and all else on standard error")
@@ -133,6 +135,7 @@ def task(arguments: argparse.Namespace) -> Report:
             retry_attempt=arguments.retry_attempt,
             gui=arguments.gui,
             force=arguments.force,
+            save_states=arguments.save_states,
         )
     except TaskError as error:
         report = {"config": arguments.config, "seed": arguments.seed}

@@ -39,6 +39,15 @@ class TemporaryFolder:
         """The folder of finished runs."""
         return self.path / f"done_{self.batch}"
 
+    @property
+    def saved(self) -> Path:
+        """The folder of unfinished runs that go on from their states."""
+        return self.path / f"sim_saved_{self.batch}"
+
+    def saved_runs(self) -> list[str]:
+        """Return the names of unfinished runs with a state, see `saved_runs.folder_of`."""
+        return sorted(path.parent.name for path in self.saved.glob("*/*.state") if path.stat().st_size > 0)
+
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
         """Keep other batches from using the same folder of finished runs meanwhile.
@@ -68,6 +77,7 @@ class TemporaryFolder:
         """Remove the data files of single runs, unless folders are kept."""
         if not self.is_kept:
             shutil.rmtree(self.done, ignore_errors=True)
+            shutil.rmtree(self.saved, ignore_errors=True)
 
     def tidy(self, configurations: Iterable[str]) -> None:
         """Remove what no later batch needs: configurations of combinations, and folders without a finished run."""
