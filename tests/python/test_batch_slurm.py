@@ -203,6 +203,32 @@ def test_run_of_a_cancelled_job_is_done_again_in_another(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["many.yaml", "results"]
 
 
+def test_run_of_a_cancelled_job_goes_on_in_another(site: dict[str, str], tmp_path: Path) -> None:
+    """A job at its time limit is ended in the same way: SIGTERM to all its processes."""
+    changes: dict[str, object] = {"simulation_time": 200.0, "time_step": 0.002, "objects.robots.nb": 2}
+    write(tmp_path / "whole", changes)
+    assert batch(tmp_path / "whole", *RUNS).code == 0
+    write(tmp_path / "slurm", changes)
+    process = start(tmp_path / "slurm", site, "--save-states", "0.02")
+    try:
+        end_s, cancelled = time.monotonic() + 90, 0
+        while process.poll() is None and time.monotonic() < end_s and cancelled < 2:
+            states = [path for path in (tmp_path / "slurm").glob("tmp/**/*.state") if path.stat().st_size > 0]
+            running = jobs(site, "--states=RUNNING")
+            if states and running:
+                ask(site, "scancel", running[0])
+                cancelled += 1
+                time.sleep(3)
+            time.sleep(0.1)
+        done = ended(process, tmp_path / "slurm")
+    finally:
+        process.kill()
+    assert done.code == 0, done.text
+    assert cancelled > 0
+    assert "begins anew" not in done.errors
+    assert results(tmp_path / "slurm") == results(tmp_path / "whole")
+
+
 def test_jobs_of_a_killed_batch_leave_and_the_same_command_continues(
     site: dict[str, str], undisturbed: dict[str, bytes], gate: Gate, tmp_path: Path
 ) -> None:

@@ -225,6 +225,7 @@ def test_jobs_of_candidates_and_of_their_runs_are_runs_at_the_same_time() -> Non
         workers=None,
         scheduler=None,
         isolated=False,
+        save_states=None,
         slurm=False,
         jobqueue=None,
         jobqueue_jobs=None,

@@ -45,7 +45,9 @@ def same_results(folder: Path, other: Path) -> None:
         assert not one.exists() or one.read_bytes() == two.read_bytes(), name
 
 
-@pytest.mark.parametrize("more", [(), QUALITY_DIVERSITY, ("--optimizer", "tpe", "--seeds", "fresh")])
+@pytest.mark.parametrize(
+    "more", [(), QUALITY_DIVERSITY, ("--optimizer", "tpe", "--seeds", "fresh"), ("--save-states", "0")]
+)
 def test_search_that_is_killed_at_random_moments_comes_to_the_same_end(more: tuple[str, ...], tmp_path: Path) -> None:
     options_ = ("--max-evals", "23", "--final-runs", "2", *more)
     for name in ("whole", "killed"):

@@ -117,6 +117,7 @@ class Runs:
             gui=False,
             retry_new_seed=retry_new_seed,
             is_isolated=workers.is_isolated,
+            save_every_s=workers.save_every_s,
         )
         self.file_digests: dict[Path, str] = {}
         world = world_digest(configuration.entries, self.settings.folders, self.file_digests)

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from pogosim.batch.runner import PogobotBatchRunner
 
-MOST_SECONDS = 1e6  # between states
-
 DONE = 0
 NO_SUCH_OUTPUT = 1
 WRONG = 2
@@ -93,7 +91,7 @@ def add_run_options(options: argparse.ArgumentParser) -> None:
 SAVE_EVERY_S = 60.0
 
 
-def add_saving_option(options: argparse.ArgumentParser) -> None:
+def add_saving_option(options: argparse._ActionsContainer) -> None:
     """Add what says whether runs that were ended go on."""
     options.add_argument(
         "--save-states",
@@ -104,17 +102,6 @@ def add_saving_option(options: argparse.ArgumentParser) -> None:
         help="save the state of each run this often, in wall-clock time (60 s), and when it is ended: the same command "
         "goes on from there",
     )
-
-
-def checked_period(save_states: float) -> float:
-    """Return how often states are saved, in s.
-
-    Raises:
-        BatchError: It is no time.
-    """
-    if not 0.0 <= save_states <= MOST_SECONDS:
-        raise BatchError(f"--save-states: expected a time from 0 to {MOST_SECONDS:.0f} s; found {save_states:g}")
-    return float(save_states)
 
 
 def add_retry_options(options: argparse.ArgumentParser) -> None:

@@ -23,7 +23,6 @@ from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
 from pogosim.batch.run import QUIET, RunSettings, Task
-from pogosim.batch.run_options import checked_period
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
@@ -132,7 +131,7 @@ class PogobotBatchRunner:
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
-        self.workers = Workers(backend, workers, scheduler, jobs, isolated)
+        self.workers = Workers(backend, workers, scheduler, jobs, isolated, save_states)
         self.keep_temp = keep_temp
         self.verbose = verbose
         self.retries = at_least(0, retries, "--retries")
@@ -143,7 +142,6 @@ class PogobotBatchRunner:
         self.layout = OF_CAMPAIGNS if with_seeds else PLAIN
         self.progress = progress
         self.simulator_output = simulator_output
-        self.save_states = None if save_states is None else checked_period(save_states)
         self.failures: list[Failure] = []
         self.replaced: list[Replaced] = []
         self.simulator_s = 0.0
@@ -322,7 +320,7 @@ class PogobotBatchRunner:
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
-        if self.save_states is not None:
+        if self.workers.save_every_s is not None:
             self.tell_of_states(waiting)
         with self.workers.opened() as do:
             outcomes = do(waiting)
@@ -382,7 +380,7 @@ class PogobotBatchRunner:
             retry_new_seed=self.retry_new_seed,
             says=SIMULATOR_OUTPUTS[self.simulator_output],
             is_isolated=self.workers.is_isolated,
-            save_every_s=self.save_states,
+            save_every_s=self.workers.save_every_s,
         )
         with self.temporary.locked():
             self.temporary.remove_leftovers()

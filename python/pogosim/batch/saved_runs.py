@@ -23,6 +23,7 @@ from pogosim.tables import table_writer
 
 STATE = ".state"
 LOCK = "lock"
+MOST_SECONDS = 1e6  # between states
 PATIENCE_S = 10.0  # for the simulator of a batch that was killed
 
 # How a run ends that was asked to: it has saved its state; or was killed, and has an earlier one.
@@ -32,6 +33,16 @@ FROM_OUTSIDE = (INTERRUPTED, *(-number for number in (signal.SIGTERM, signal.SIG
 # In the metadata of a part that goes on: the time from which it does, and the number of rows before.
 CONTINUED = (b"continued_from_s", b"continued_after_rows")
 NOT_OF_THE_WHOLE = (*CONTINUED, INCOMPLETE)
+
+
+def check_period(save_every_s: float) -> None:
+    """Check how often states are saved.
+
+    Raises:
+        BatchError: It is no time.
+    """
+    if not 0.0 <= save_every_s <= MOST_SECONDS:
+        raise BatchError(f"--save-states: expected a time from 0 to {MOST_SECONDS:.0f} s; found {save_every_s:g}")
 
 
 @dataclass(frozen=True)

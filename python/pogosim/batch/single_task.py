@@ -23,8 +23,7 @@ from pogosim.batch.results import check_columns
 from pogosim.batch.run import FRAMES, Outcome, RunSettings, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.run_log import EFFECTIVE, with_last_line
-from pogosim.batch.run_options import checked_period
-from pogosim.batch.saved_runs import SavedRun, held
+from pogosim.batch.saved_runs import SavedRun, check_period, held
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
@@ -218,7 +217,8 @@ def task_in(
     path = find_program(program)
     temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
     beside = configuration.path.absolute().parent
-    every_s = None if save_states is None else checked_period(save_states)
-    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui, save_every_s=every_s)
+    if save_states is not None:
+        check_period(save_states)
+    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui, save_every_s=save_states)
     (task,) = tasks_of(entries, [seed], settings, {})
     return replace(task, run=run_index)

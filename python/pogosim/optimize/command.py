@@ -21,6 +21,7 @@ from pogosim.batch.run_options import (
     PROGRAM_HELP,
     WRONG,
     add_retry_options,
+    add_saving_option,
     check_names,
     give_program,
 )
@@ -90,6 +91,7 @@ def parser(prog: str, optimizers: Iterable[str] = OPTIMIZERS.own) -> Parser:
     group = options.add_argument_group("workers")
     group.add_argument("-j", "--workers", type=int, metavar="N", help="runs at the same time (one per processor)")
     group.add_argument("--isolated", action="store_true", help=ISOLATED)
+    add_saving_option(group)
     group.add_argument(
         "--candidate-jobs", type=int, metavar="N", help=f"candidates at the same time ({usual.candidate_jobs})"
     )

@@ -68,7 +68,7 @@ def workers_of(arguments: argparse.Namespace, settings: Settings) -> Workers:
     number = arguments.workers
     if number is None and settings.batch_jobs and jobs is None:
         number = settings.candidate_jobs * settings.batch_jobs
-    return Workers(settings.backend, number, arguments.scheduler, jobs, arguments.isolated)
+    return Workers(settings.backend, number, arguments.scheduler, jobs, arguments.isolated, arguments.save_states)
 
 
 def say_where_it_starts(space: Space) -> None:
