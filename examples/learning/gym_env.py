@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from commanded_robots import ACTIONS, OBSERVATIONS, Array, CommandedRobots
 from pogosim.extras import installing
 
@@ -28,10 +29,11 @@ class LightSeeker(gymnasium.Env[Array, Array]):
     An episode is truncated after 100 steps, 20 s.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012 -- as Gymnasium has it
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 -- as Gymnasium has it
 
-    def __init__(self, episode_steps: int = 100) -> None:
-        """Describe observations and actions; the run begins with `reset`."""
+    def __init__(self, episode_steps: int = 100, render_mode: str | None = None) -> None:
+        """Describe observations and actions; the run begins with `reset`. `render_mode`: None or "rgb_array"."""
+        self.render_mode = render_mode
         self.observation_space = spaces.Box(-1.0, 1.0, (len(OBSERVATIONS),), np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (len(ACTIONS),), np.float32)
         self.episode_steps = episode_steps
@@ -53,6 +55,11 @@ class LightSeeker(gymnasium.Env[Array, Array]):
     def _light(self) -> float:
         assert self._robots.simulation is not None
         return float(self._robots.simulation.light_levels[0]) / BRIGHTEST
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """Return a picture of the arena, shape (800, 800, 3); None without a render mode, and before `reset`."""
+        simulation = self._robots.simulation
+        return None if self.render_mode is None or simulation is None else simulation.render()
 
     def close(self) -> None:
         """End the run."""

@@ -133,6 +133,10 @@ char const* pogosim_run_columns(pogosim_run const* run);
 /// warning, 'E' error, 'P' printed by the program. Valid until the next call for this run.
 char const* pogosim_run_messages(pogosim_run* run);
 
+/// Draws the world, as the configuration wants pictures (window_width and window_height apart). `rgb`: height_px x
+/// width_px x 3 bytes, row by row from the top left. Needs no display.
+int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint8_t* rgb);
+
 /// Moves the body of a robot to another pose, at rest. mm and rad.
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad);
 

@@ -17,6 +17,7 @@
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
 #include "pogosim/version.h"
+#include "render/canvas.hpp"
 
 using namespace pogosim;
 
@@ -146,6 +147,23 @@ char const* pogosim_run_columns(pogosim_run const* run) {
 char const* pogosim_run_messages(pogosim_run* run) {
     std::lock_guard const lock(run->in_use);
     return run->take_messages().c_str();
+}
+
+int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint8_t* rgb) {
+    return with_status_of(*run, [&] {
+        constexpr int32_t kMostPx = 16384;
+        if (std::min(width_px, height_px) < 1 || std::max(width_px, height_px) > kMostPx) {
+            throw ConfigError(fmt::format("a picture has 1 to {} pixels in a row, and as many rows; found {} x {}",
+                                          kMostPx, width_px, height_px));
+        }
+        Canvas const canvas = run->simulation().picture({width_px, height_px});
+        for (Pixel const pixel : canvas.pixels()) {
+            *rgb++ = static_cast<uint8_t>(pixel >> 16U);
+            *rgb++ = static_cast<uint8_t>(pixel >> 8U);
+            *rgb++ = static_cast<uint8_t>(pixel);
+        }
+        return POGOSIM_OK;
+    });
 }
 
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad) {

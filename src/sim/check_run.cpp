@@ -200,11 +200,9 @@ void check_programs(Simulation& simulation, bool is_stand_in, bool strict, Probl
 }
 
 void draw(Scenario const& scenario, Simulation& simulation, std::string const& file) {
-    PictureFormat const format = picture_format(scenario, simulation.world());
-    Canvas canvas(format.size);
-    Painter().paint(canvas, format.camera, simulation.snapshots().take(parts_for(format.paint)), format.paint);
     try {
-        write_png(real_path(file), canvas);  // a link stays, also one that leads nowhere yet
+        // A link stays, also one that leads nowhere yet.
+        write_png(real_path(file), simulation.picture(picture_size(scenario)));
     } catch (FileError const& error) {
         throw OutputError(
             fmt::format("--picture: '{}' cannot be written: {}; choose another file", file, error.what()));

@@ -156,9 +156,13 @@ double film_period_s(Scenario const& scenario) {
 
 }  // namespace
 
+PictureSize picture_size(Scenario const& scenario) {
+    return {scenario.view.window_width_px, scenario.view.window_height_px};
+}
+
 PictureFormat picture_format(Scenario const& scenario, World const& world) {
     ViewConfig const& view = scenario.view;
-    PictureSize const size{view.window_width_px, view.window_height_px};
+    PictureSize const size = picture_size(scenario);
     LinkLayer const layer = view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
     return {.size = size,
             .camera = fitted(world.arena.bounds, size),

@@ -16,6 +16,8 @@
 
 namespace pogosim {
 
+PictureSize picture_size(Scenario const& scenario);
+
 /// What pictures of a world show, as the configuration says.
 PictureFormat picture_format(Scenario const& scenario, World const& world);
 

@@ -23,6 +23,7 @@
 #include "firmware/firmware_brain.hpp"
 #include "firmware/profile.hpp"
 #include "process/backtrace.hpp"
+#include "render/painter.hpp"
 #include "robot/context.hpp"
 #include "robot/program_checks.hpp"
 #include "sim/build_world.hpp"
@@ -132,6 +133,13 @@ SnapshotTaker& Simulation::snapshots() {
         snapshots_ = std::make_unique<SnapshotTaker>(world_, lighting_);
     }
     return *snapshots_;
+}
+
+Canvas Simulation::picture(PictureSize size) {
+    PictureFormat const format = picture_format(scenario_, world_);
+    Canvas canvas(size);
+    Painter().paint(canvas, fitted(world_.arena.bounds, size), snapshots().take(parts_for(format.paint)), format.paint);
+    return canvas;
 }
 
 Inspector& Simulation::inspector() {

@@ -25,6 +25,7 @@
 #include "physics/physics_engine.hpp"
 #include "process/crash_handler.hpp"
 #include "process/program_image.hpp"
+#include "render/canvas.hpp"
 #include "robot/controllers.hpp"
 #include "robot/native_program.hpp"
 #include "sim/flash_state.hpp"
@@ -192,6 +193,9 @@ public:
 
     /// Takes pictures of the world between two steps. Made at the first call, so that it costs nothing without one.
     SnapshotTaker& snapshots();
+
+    /// The world between two steps, as the configuration wants pictures, but for their size.
+    Canvas picture(PictureSize size);
 
     /// Looks into single robots between two steps. Call it before start(), so that it sees every line that robots print
     /// and every row; a run without it does not keep any.

@@ -41,7 +41,7 @@ def seeker() -> Iterator[LightSeeker]:
 def test_light_seeker_is_an_environment_of_gymnasium(seeker: LightSeeker) -> None:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".*not have a spec|.*render")
-        check_env(seeker, skip_render_check=True)
+        check_env(seeker)
 
 
 def test_gathering_is_an_environment_of_pettingzoo(capsys: pytest.CaptureFixture[str]) -> None:

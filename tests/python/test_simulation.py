@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import gc
+import io
 import logging
 import math
 import signal
@@ -17,6 +18,7 @@ from typing import Any
 import numpy as np
 import pogosim
 import pytest
+from PIL import Image
 from pogosim.utils import load_dataframe
 from running import PROGRAMS, ROOT, SHARED, compile_program, compiler, example, run, write_scene
 
@@ -283,6 +285,37 @@ def test_crashes_on_threads_are_those_of_their_runs(hosted: Path, scene: Path) -
         assert f"tick {5 + 7 * index}" in message
     for simulation in runs:
         simulation.close()
+
+
+def test_picture_is_that_of_a_frame_of_the_same_moment(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    frames = {"frames_name": str(tmp_path / "f{:07.4f}.png"), "save_video_period": 0.5}
+    size = {"window_width": 300, "window_height": 200}
+    with pogosim.Simulation(hosted, scene, set={**frames, **size}) as sim:
+        sim.run(0.5)
+        picture = sim.render(300, 200)
+        assert picture.shape == (200, 300, 3)
+        assert picture.dtype == np.uint8
+        assert np.array_equal(np.asarray(Image.open(io.BytesIO(sim._repr_png_() or b"")))[..., :3], sim.render())
+        before = sim.state_hash
+        sim.render(1, 1)
+        assert sim.state_hash == before
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "f00.5000.png"))[..., :3], picture)
+    assert sim._repr_png_() is None
+
+
+def test_pictures_show_robots_where_they_are(hosted: Path, scene: Path) -> None:
+    with pogosim.Simulation(hosted, scene) as sim:
+        first = sim.render()
+        assert len(np.unique(first.reshape(-1, 3), axis=0)) > 3
+        assert np.array_equal(sim.render(), first)
+        sim.set_pose(1, 500.0, 520.0)
+        assert not np.array_equal(sim.render(), first)
+
+
+@pytest.mark.parametrize("size", [(0, 100), (100, -1), (20_000, 10), (10.5, 10), ("a", 10), (True, 10)])
+def test_pictures_of_no_size_are_refused(size: tuple[Any, Any], sim: pogosim.Simulation) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match=r"(width|height): expected an integer"):
+        sim.render(*size)
 
 
 def test_poses_can_be_set(sim: pogosim.Simulation) -> None:

@@ -153,6 +153,7 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_clear_received": (c_int, (c_void_p, c_char_p)),
     "pogosim_run_categories": (c_char_p, (c_void_p,)),
     "pogosim_run_messages": (c_char_p, (c_void_p,)),
+    "pogosim_run_draw": (c_int, (c_void_p, c_int32, c_int32, c_void_p)),
     "pogosim_run_set_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),
     "pogosim_run_object": (c_int, (c_void_p, c_size_t, POINTER(ObjectState))),
     "pogosim_run_set_object_pose": (c_int, (c_void_p, c_size_t, c_double, c_double, c_double)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import math
 import os
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 # PyYAML, elftools and pandas are imported where they are used: a short run takes less time than importing one of them.
 
 MOST_SEED = 2**32 - 1
+MOST_PIXELS = 16384  # of a side of a picture
 MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
@@ -616,6 +618,43 @@ class Simulation:
             ConfigurationError: There is no such category, or something else drives its robots.
         """
         return Brain(lambda: self._run, category)
+
+    # ---- Pictures
+
+    def render(self, width: int = 800, height: int = 800) -> npt.NDArray[np.uint8]:
+        """Draw the world now, as frames and films show it. Needs no display.
+
+            plt.imshow(sim.render())
+
+        What is drawn beside the arena and its objects (time, scale bar, communication channels, light levels, trails)
+        follows the configuration, such as `show_communication_channels`.
+
+        Args:
+            width: Pixels, 1 to 16384. The whole arena is in the middle of the picture.
+            height: Pixels, 1 to 16384.
+
+        Returns:
+            Red, green and blue, 0 to 255. Shape (height, width, 3), the first row along the top; a copy.
+
+        Raises:
+            ConfigurationError: A size is out of range.
+        """
+        columns = given.integer("width", width, 1, MOST_PIXELS)
+        rows = given.integer("height", height, 1, MOST_PIXELS)
+        picture = np.empty((rows, columns, 3), np.uint8)
+        with self._busy():
+            check(library().pogosim_run_draw(self._run.pointer, columns, rows, picture.ctypes.data))
+        return picture
+
+    def _repr_png_(self) -> bytes | None:
+        """Return the picture that a notebook shows for a run in the last line of a cell; None: it is closed."""
+        if self._current.run is None or self._is_closed:
+            return None
+        from PIL import Image
+
+        file = io.BytesIO()
+        Image.fromarray(self.render()).save(file, "PNG")
+        return file.getvalue()
 
     # ---- What can be changed
 
