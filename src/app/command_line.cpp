@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include "base/escaped.hpp"
@@ -43,6 +45,11 @@ std::string is_not_empty(std::string const& text) {
 std::string is_picture(std::string const& text) {
     return text.ends_with(".png") && text.size() > 4 ? ""
                                                      : "expected the name of a picture, .png, found '" + text + "'";
+}
+
+/// CLI::Range lets nan pass.
+std::string is_not_nan(std::string const& text) {
+    return std::isnan(std::strtod(text.c_str(), nullptr)) ? "expected a number of seconds, found '" + text + "'" : "";
 }
 
 /// CLI11 parses "-nr" as "-n -r", so it is replaced by the long name.
@@ -101,12 +108,15 @@ void declare_options(CLI::App& app, CommandLine& options) {
         app.add_option("--at", options.save_at_s, "with --save-state: save it at this simulated time; the run goes on")
             ->type_name("SECONDS")
             ->check(CLI::Range(0.0, kMostSeconds))
+            ->check(is_not_nan)
             ->needs(save_state);
-    app.add_option("--save-state-every", options.save_every_s,
-                   "with --save-state: save it again and again, after this wall-clock time each; a run that cannot be "
-                   "saved goes on without")
+    app.add_option(
+           "--save-state-every", options.save_every_s,
+           "with --save-state: save it again and again, after this wall-clock time each (0: each step); a run that "
+           "cannot be saved goes on without")
         ->type_name("SECONDS")
         ->check(CLI::Range(0.0, kMostSeconds))
+        ->check(is_not_nan)
         ->needs(save_state)
         ->excludes(save_at);
     app.add_option("--from-state", options.from_state,

@@ -161,12 +161,18 @@ void check_profile_file(Scenario const& scenario, CommandLine const& options) {
     }
 }
 
-/// The state of a run must not take the place of another file of it.
+/// The states of a run must not take the place of another file of it, nor that file theirs.
 void check_state_file(Scenario const& scenario, CommandLine const& options) {
     if (!options.save_state.empty() && is_used_file(scenario, options.video, options.save_state)) {
         throw ConfigError(
             fmt::format("--save-state would overwrite '{}', which the run needs or writes; choose another file",
                         escaped(options.save_state)));
+    }
+    if (!options.from_state.empty() && is_used_file(scenario, options.video, options.from_state)) {
+        throw ConfigError(
+            fmt::format("--from-state: the run needs '{}' for something else, or would overwrite it; give "
+                        "the state another name",
+                        escaped(options.from_state)));
     }
 }
 

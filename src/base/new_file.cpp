@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <random>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 namespace pogosim {
@@ -55,6 +57,21 @@ NewFile::NewFile(fs::path const& target) : target_(target) {
         fail_with_errno(errno);
     }
     scratch_.emplace(path_);
+}
+
+void NewFile::remove_unfinished(fs::path const& target) {
+    constexpr std::string_view kHex = "0123456789abcdef";
+    constexpr std::size_t kDigits = 8;
+    std::string const stem = target.filename().native() + ".tmp.";
+    std::error_code error;
+    fs::path const folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    for (fs::directory_entry const& entry : fs::directory_iterator(folder, error)) {
+        std::string const name = entry.path().filename().native();
+        if (name.size() == stem.size() + kDigits && name.starts_with(stem) &&
+            name.find_first_not_of(kHex, stem.size()) == std::string::npos) {
+            fs::remove(entry.path(), error);
+        }
+    }
 }
 
 NewFile::~NewFile() {

@@ -25,6 +25,9 @@ public:
     NewFile(NewFile const&) = delete;
     NewFile& operator=(NewFile const&) = delete;
 
+    /// Removes what processes that were killed have left beside a file. Nothing may be writing it.
+    static void remove_unfinished(std::filesystem::path const& target);
+
     int descriptor() const { return descriptor_; }
 
     /// Replaces the other file, and has its permissions then.

@@ -174,6 +174,7 @@ void Simulation::write_state() {
     is_save_late_ = false;
     try {
         state_output_->write(state_for_process());
+        is_state_unwritten_ = false;
     } catch (ConfigError const& error) {
         if (options_.save_state_every_s) {
             go_on_unsaved(error.what());
@@ -185,7 +186,9 @@ void Simulation::write_state() {
         if (!options_.save_state_every_s) {
             throw;
         }
-        log().warn("{}", escaped(error.what()));
+        if (!std::exchange(is_state_unwritten_, true)) {
+            log().warn("{}; this is tried again, and not told again until it has worked", escaped(error.what()));
+        }
         return;
     }
     constexpr auto kSaved = "the state of t = {} s is in '{}': go on with --from-state";

@@ -303,6 +303,7 @@ private:
     std::unique_ptr<StateOutput> state_output_;                // null: no state is saved, or it was
     bool is_save_late_ = false;                                // the state is due, and a robot waits
     std::chrono::steady_clock::time_point saved_at_{};         // with save_state_every_s: when that was done last
+    bool is_state_unwritten_ = false;                          // the last one could not be written, which was told
     std::string lost_state_{};                                 // why it could not be saved
     double began_s_ = 0.0;                                     // when this process took the run over
     bool leaves_archive_ = false;                              // of flash memory as it is

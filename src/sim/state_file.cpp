@@ -99,9 +99,6 @@ std::size_t indent_of(std::string const& line) {
 
 /// "objects: robots: nb: 30", from the keys above a line.
 std::string path_of(std::vector<std::string> const& lines, std::size_t at) {
-    if (at >= lines.size()) {
-        return "nothing more";
-    }
     std::string path = lines[at].substr(indent_of(lines[at]));
     std::size_t indent = indent_of(lines[at]);
     for (std::size_t i = at; i-- > 0 && indent > 0;) {
@@ -113,16 +110,37 @@ std::string path_of(std::vector<std::string> const& lines, std::size_t at) {
     return path;
 }
 
+std::vector<std::string> entries_of(std::string const& text) {
+    std::vector<std::string> const lines = lines_of(text);
+    std::vector<std::string> entries;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!lines[i].ends_with(':')) {  // what is below says it
+            entries.push_back(path_of(lines, i));
+        }
+    }
+    return entries;
+}
+
 [[noreturn]] void refuse(SavedState const& saved, std::string const& reason) {
     throw ConfigError(fmt::format("--from-state: '{}' {}", saved.file.string(), reason));
 }
 
+/// The first entry that is not among others; empty if all are.
+std::string first_beyond(std::vector<std::string> const& entries, std::vector<std::string> const& others) {
+    auto const beyond = std::ranges::find_if(
+        entries, [&](std::string const& entry) { return std::ranges::find(others, entry) == others.end(); });
+    return beyond == entries.end() ? "" : *beyond;
+}
+
 std::string difference(std::string const& saved, std::string const& own) {
-    std::vector<std::string> const before = lines_of(saved);
-    std::vector<std::string> const now = lines_of(own);
-    auto const [one, other] = std::ranges::mismatch(before, now);
-    return fmt::format("'{}' then, and '{}' now", path_of(before, static_cast<std::size_t>(one - before.begin())),
-                       path_of(now, static_cast<std::size_t>(other - now.begin())));
+    std::vector<std::string> const before = entries_of(saved);
+    std::vector<std::string> const now = entries_of(own);
+    std::string const then = first_beyond(before, now);
+    std::string const new_one = first_beyond(now, before);
+    if (then.empty() || new_one.empty()) {
+        return then.empty() ? fmt::format("'{}' is new", new_one) : fmt::format("'{}' is no longer there", then);
+    }
+    return fmt::format("'{}' then, and '{}' now", then, new_one);
 }
 
 std::string_view text_of(StateWriter const& state) {
@@ -257,7 +275,8 @@ StateOutput::StateOutput(fs::path const& file) : name_(file) {
         fs::path const path = real_path(file);
         make_parent_folder(path);
         reserved_ = LockedFile(path);
-        NewFile const trial(path);  // a folder in which nothing can be written is known before the run
+        NewFile::remove_unfinished(path);  // of runs that were killed: none but this one writes here
+        NewFile const trial(path);         // a folder in which nothing can be written is known before the run
     } catch (FileError const& failure) {
         throw OutputError(fmt::format("--save-state: cannot write '{}': {}", file.string(), failure.what()));
     }

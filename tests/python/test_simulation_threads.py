@@ -40,6 +40,8 @@ ARGUMENTS: dict[str, Any] = {
     "kind": "rod",
     "links": [],
     "set": None,
+    "width": 40,
+    "height": 30,
 }
 
 

@@ -427,6 +427,7 @@ def test_other_runs_are_refused_with_what_differs(saved: tuple[Path, Path], tmp_
 
     assert "'objects: robots: nb: 3' then, and 'objects: robots: nb: 4' now" in why({"objects.robots.nb": 4})
     assert "another configuration" in why({"parameters": {"a": 1}})
+    assert "'parameters: a: 1' is new" in why({"parameters": {"a": 1}})
     assert "'time_step: 0.01' then, and 'time_step: 0.005' now" in why({"time_step": 0.005})
     assert "is of a run with seed 1, not 2: leave out --seed" in why({}, "-s", "2")
     assert "is of t = 0.5 s, and simulation_time is 0.5 s: set a longer one" in why({"simulation_time": 0.5})
@@ -471,6 +472,10 @@ def test_files_that_would_be_lost_are_not_overwritten(tmp_path: Path) -> None:
     )
     assert (folder / "notes.txt").read_text() == "mine"
     assert "--save-state would overwrite 'scene.yaml'" in refused(program, folder, {}, "--save-state", "scene.yaml")
+    for option in ("--at", "--save-state-every"):
+        assert "expected a number of seconds, found 'nan'" in refused(
+            program, folder, {}, "--save-state", "x", option, "nan"
+        )
     assert "--at 9: the run ends at 2 s" in refused(program, folder, {}, "--save-state", "x", "--at", "9")
 
 
@@ -485,3 +490,26 @@ def test_two_runs_cannot_write_one_state(tmp_path: Path) -> None:
     finally:
         process.kill()
         process.communicate(timeout=60)
+
+
+def test_state_that_a_run_goes_on_from_is_none_of_its_files(saved: tuple[Path, Path], tmp_path: Path) -> None:
+    program, state = saved
+    (tmp_path / "x").write_bytes(state.read_bytes())
+    (tmp_path / "rows.feather").symlink_to("x")
+    for settings in (
+        {"enable_console_logging": True, "console_filename": "x"},
+        {"data_filename": "rows.feather"},
+    ):
+        message = refused(program, tmp_path, {"simulation_time": 1.0, **settings}, "--from-state", "x")
+        assert "--from-state: the run needs 'x' for something else, or would overwrite it" in message
+        assert (tmp_path / "x").read_bytes() == state.read_bytes()
+
+
+def test_what_a_killed_run_left_of_a_state_is_removed_by_the_next(tmp_path: Path) -> None:
+    program = program_of(tmp_path / "program")
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "x.tmp.0123abcd").write_bytes(b"unfinished")
+    (folder / "x.tmp.mine").write_bytes(b"mine")
+    assert run(program, folder, {"simulation_time": 0.1}, ["--save-state", "x"]).code == 0
+    assert sorted(path.name for path in folder.glob("x*")) == ["x", "x.tmp.mine"]
