@@ -17,6 +17,7 @@ from pogosim.batch.simulators import simulators
 from pogosim.extras import installing
 
 CONNECT_S = 5
+MOST_CANCELLED = 1000  # runs of a batch that workers gave back
 POLL_S = 0.2
 
 
@@ -107,17 +108,23 @@ def outcomes_of(
     futures: list[Any] = []
     try:
         as_completed: Any = importlib.import_module("distributed").as_completed
-        futures = [
-            client.submit(do, task, key=f"pogosim-{task.settings.temporary.batch}-{task.key}", pure=False)
-            for task in tasks
-        ]
+        futures = [client.submit(do, task, key=key_of(task, 0), pure=False) for task in tasks]
         left = {future.key: task for future, task in zip(futures, tasks, strict=True)}
-        for future in finished(as_completed(futures, raise_errors=False), poll):
+        completed = as_completed(futures, raise_errors=False)
+        again = 0
+        for future in finished(completed, poll):
             task = left.pop(future.key)
             if future.status == "finished":
                 yield future.result()
             elif future.status == "error":
                 yield Outcome(task.key, problem_of(future.exception()))
+            elif client.status == "running" and again < MOST_CANCELLED:
+                # A worker that was asked to end gives its run back as cancelled when it is slow to close.
+                again += 1
+                repeated = client.submit(do, task, key=key_of(task, again), pure=False)
+                futures.append(repeated)
+                left[repeated.key] = task
+                completed.add(repeated)
             else:
                 raise BatchError(
                     "the Dask scheduler ended before the batch; finished runs are kept: start it "
@@ -133,6 +140,11 @@ def problem_of(error: Exception) -> str:
     if type(error).__name__ == "KilledWorker":
         return "each worker that did it was killed, see their logs; it may need more time or memory"
     return f"its worker failed: {one_line(repr(error))}"
+
+
+def key_of(task: Task, again: int) -> str:
+    """Return the name of a run for Dask; another one for each time that it is given to workers."""
+    return f"pogosim-{task.settings.temporary.batch}-{task.key}" + (f"-{again}" if again else "")
 
 
 def finished(completed: Any, poll: Callable[[], None] | None) -> Iterator[Any]:
