@@ -205,7 +205,7 @@ def test_run_of_a_cancelled_job_is_done_again_in_another(
 
 def test_run_of_a_cancelled_job_goes_on_in_another(site: dict[str, str], tmp_path: Path) -> None:
     """A job at its time limit is ended in the same way: SIGTERM to all its processes."""
-    changes: dict[str, object] = {"simulation_time": 200.0, "time_step": 0.002, "objects.robots.nb": 2}
+    changes: dict[str, object] = {"simulation_time": 1000.0, "time_step": 0.002, "objects.robots.nb": 2}
     write(tmp_path / "whole", changes)
     assert batch(tmp_path / "whole", *RUNS).code == 0
     write(tmp_path / "slurm", changes)
