@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSignature{"PGSTATE\0", 8};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeadBytes = 8 + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 /// Keys that decide for how long a run goes on, and what it writes and shows: a state goes on with others.
@@ -137,6 +137,9 @@ std::string difference(std::string const& saved, std::string const& own) {
     std::vector<std::string> const now = entries_of(own);
     std::string const then = first_beyond(before, now);
     std::string const new_one = first_beyond(now, before);
+    if (then.empty() && new_one.empty()) {
+        return "its entries are in another order";
+    }
     if (then.empty() || new_one.empty()) {
         return then.empty() ? fmt::format("'{}' is new", new_one) : fmt::format("'{}' is no longer there", then);
     }
