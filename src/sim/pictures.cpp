@@ -143,6 +143,11 @@ std::unique_ptr<FrameLock> lock_frames(Scenario const& scenario, FrameNames cons
     return lock;
 }
 
+PictureFormat picture_format(Scenario const& scenario, World const& world) {
+    PictureSize const size = picture_size(scenario);
+    return {.size = size, .camera = fitted(world.arena.bounds, size), .paint = paint_options(scenario)};
+}
+
 std::unique_ptr<PictureWriter> make_writer(PictureFormat const& format, std::string const& film) {
     auto film_file = film.empty() ? nullptr : std::make_unique<FilmFile>(film, format.size);
     return std::make_unique<PictureWriter>(format, drawing_threads(format.size), std::move(film_file));
@@ -160,18 +165,15 @@ PictureSize picture_size(Scenario const& scenario) {
     return {scenario.view.window_width_px, scenario.view.window_height_px};
 }
 
-PictureFormat picture_format(Scenario const& scenario, World const& world) {
+PaintOptions paint_options(Scenario const& scenario) {
     ViewConfig const& view = scenario.view;
-    PictureSize const size = picture_size(scenario);
     LinkLayer const layer = view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
-    return {.size = size,
-            .camera = fitted(world.arena.bounds, size),
-            .paint = {.time = view.show_time,
-                      .scale_bar = view.show_scale_bar,
-                      .links = view.show_communication_channels ? layer : LinkLayer::hidden,
-                      .lateral_leds = view.show_lateral_leds,
-                      .light_levels = view.show_light_levels,
-                      .trails = view.show_trajectory_traces}};
+    return {.time = view.show_time,
+            .scale_bar = view.show_scale_bar,
+            .links = view.show_communication_channels ? layer : LinkLayer::hidden,
+            .lateral_leds = view.show_lateral_leds,
+            .light_levels = view.show_light_levels,
+            .trails = view.show_trajectory_traces};
 }
 
 void Pictures::check_frames(Scenario const& scenario) {
@@ -224,7 +226,7 @@ Pictures::Pictures(Scenario const& scenario, World const& world, Lighting const&
       lock_(lock_frames(scenario, names_)),
       film_(film),
       taker_(world, lighting),
-      parts_(parts_for(picture_format(scenario, world).paint)),
+      parts_(parts_for(paint_options(scenario))),
       frame_times_(scenario.view.save_video_period_s, 1),
       film_times_(film_period_s(scenario), 0),
       writer_(make_writer(picture_format(scenario, world), film)) {}

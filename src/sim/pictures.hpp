@@ -18,8 +18,8 @@ namespace pogosim {
 
 PictureSize picture_size(Scenario const& scenario);
 
-/// What pictures of a world show, as the configuration says.
-PictureFormat picture_format(Scenario const& scenario, World const& world);
+/// What pictures show, as the configuration says.
+PaintOptions paint_options(Scenario const& scenario);
 
 class Pictures {
 public:

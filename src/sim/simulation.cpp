@@ -136,9 +136,9 @@ SnapshotTaker& Simulation::snapshots() {
 }
 
 Canvas Simulation::picture(PictureSize size) {
-    PictureFormat const format = picture_format(scenario_, world_);
+    PaintOptions const options = paint_options(scenario_);
     Canvas canvas(size);
-    Painter().paint(canvas, fitted(world_.arena.bounds, size), snapshots().take(parts_for(format.paint)), format.paint);
+    Painter().paint(canvas, fitted(world_.arena.bounds, size), snapshots().take(parts_for(options)), options);
     return canvas;
 }
 

@@ -200,9 +200,8 @@ WindowSetup window_setup(Scenario const& scenario, World const& world, std::stri
     WindowSetup setup;
     std::string const name = program_name.empty() ? "" : program_name + " - ";
     setup.title = fmt::format("{}Pogosim {}", name, POGOSIM_VERSION_STRING);
-    PictureFormat const format = picture_format(scenario, world);
-    setup.size = format.size;
-    setup.options = format.paint;
+    setup.size = picture_size(scenario);
+    setup.options = paint_options(scenario);
     setup.duration_s = scenario.simulation_time_s;
     setup.time_step_s = world.time_step_s;
     setup.speed_up = scenario.view.gui_speed_up;

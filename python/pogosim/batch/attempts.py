@@ -118,10 +118,7 @@ def attempt_alone(task: Task, number: int) -> Outcome:
     is_kept = temporary.is_kept
     try:
         outcome = attempt_in(folder, task, number)
-        if outcome.file is not None:
-            result = task.result_of(outcome.file.retry_attempt)
-            keep(outcome.file.path, result, as_copy=temporary.is_kept)
-            outcome = replace(outcome, file=replace(outcome.file, path=result))
+        outcome = with_kept_file(outcome, task)
         is_kept |= bool(outcome.problem)
         return replace(outcome, folder=str(folder) if is_kept else "")
     finally:
@@ -141,12 +138,9 @@ def attempt_in_parts(task: Task, number: int) -> Outcome:
         if its_lock is None:
             return attempt_alone(task, number)
         saved = SavedRun(folder, task, number)
-        outcome = attempt_from_state(saved, its_lock)
+        outcome = with_kept_file(attempt_from_state(saved, its_lock), task)
         is_kept = task.settings.temporary.is_kept
         if outcome.file is not None:
-            result = task.result_of(outcome.file.retry_attempt)
-            keep(outcome.file.path, result, as_copy=is_kept)
-            outcome = replace(outcome, file=replace(outcome.file, path=result))
             saved.finish()
             if not is_kept:
                 shutil.rmtree(folder, ignore_errors=True)
@@ -285,6 +279,19 @@ def arguments_of(task: Task, number: int, configuration: str) -> list[str]:
 def disk_full(temporary: TemporaryFolder) -> str:
     """Return what is said when a run cannot write."""
     return f"the disk of {temporary.path} is full; free space, then give the same command again"
+
+
+def with_kept_file(outcome: Outcome, task: Task) -> Outcome:
+    """Put the data file of a run that is done where finished runs are, and return the run with that path.
+
+    Raises:
+        OSError: It cannot be put there.
+    """
+    if outcome.file is None:
+        return outcome
+    result = task.result_of(outcome.file.retry_attempt)
+    keep(outcome.file.path, result, as_copy=task.settings.temporary.is_kept)
+    return replace(outcome, file=replace(outcome.file, path=result))
 
 
 def keep(data: Path, result: Path, as_copy: bool) -> None:

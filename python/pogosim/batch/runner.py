@@ -23,6 +23,7 @@ from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
 from pogosim.batch.run import QUIET, RunSettings, Task
+from pogosim.batch.saved_runs import states_in
 from pogosim.batch.seeds import listed_seeds
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
@@ -345,7 +346,7 @@ class PogobotBatchRunner:
             log.warning("--save-states: %s is a Python file, whose runs cannot be saved", self.simulator_binary)
             return
         keys = {task.key for task in waiting}
-        found = self.temporary.saved_runs()
+        found = [state.parent.name for state in states_in(self.temporary.saved, "*/")]
         going_on = sum(name.partition("_")[0] in keys for name in found)
         if going_on:
             tell(f"{going_on} of {len(waiting)} runs go on from their states, in {self.temporary.saved}")

@@ -82,8 +82,8 @@ class SavedRun:
 
     def others(self) -> list[Path]:
         """Return the states of other runs in the folder."""
-        found = [path for path in self.folder.glob(f"*{STATE}") if re.fullmatch(r"[0-9a-f]{32}_\d+", path.stem)]
-        return [path for path in found if path != self.state and path.stat().st_size > 0]
+        found = states_in(self.folder)
+        return [path for path in found if path != self.state and re.fullmatch(r"[0-9a-f]{32}_\d+", path.stem)]
 
     def arguments(self) -> list[str]:
         """Return what the simulator is told in addition."""
@@ -120,6 +120,11 @@ class SavedRun:
         """
         for path in (self.state, *self.others(), *parts_of(self.data)[:-1], self.folder / LOCK):
             path.unlink(missing_ok=True)
+
+
+def states_in(folder: Path, below: str = "") -> list[Path]:
+    """Return the states in a folder, or in those `below` it ("*/"); a run that was killed early left an empty file."""
+    return [path for path in folder.glob(f"{below}*{STATE}") if path.stat().st_size > 0]
 
 
 def folder_of(task: Task, number: int) -> Path:

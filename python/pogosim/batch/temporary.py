@@ -44,10 +44,6 @@ class TemporaryFolder:
         """The folder of unfinished runs that go on from their states."""
         return self.path / f"sim_saved_{self.batch}"
 
-    def saved_runs(self) -> list[str]:
-        """Return the names of unfinished runs with a state, see `saved_runs.folder_of`."""
-        return sorted(path.parent.name for path in self.saved.glob("*/*.state") if path.stat().st_size > 0)
-
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
         """Keep other batches from using the same folder of finished runs meanwhile.
