@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from batches import results, script, write_options
 from pogosim import pogobatch
+from pogosim.batch.execution import Execution
 from pogosim.pogobatch import (
     LocalCampaignError,
     LocalCampaignResult,
@@ -64,6 +65,25 @@ def test_campaign_writes_the_bytes_of_the_subcommand_whatever_does_the_runs(tmp_
     for more in ({"backend": "sequential"}, {"jobs": 3}, {"simulator_output": "verbose"}, {"retry_new_seed": False}):
         campaign(tmp_path, **more)
         assert results(tmp_path)["result.feather"] == first
+
+
+def test_runs_that_ended_before_their_manifests_were_written_are_done_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else a merge of the kept folders would lack them: it finds runs by their manifests."""
+    write_options(tmp_path)
+
+    def end(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+        patched.setattr(Execution, "keep_manifest", end)
+        campaign(tmp_path, backend="sequential", keep_temp=True)
+    campaign(tmp_path, keep_temp=True)
+    manifests = [json.loads(path.read_text()) for path in tmp_path.glob("tmp/*/pogobatch_task.json")]
+    runs = {(entries["seed"], entries["batch_choices"]["objects.robots.nb"]) for entries in manifests}
+    assert runs == {(0, 2), (0, 3), (1, 2), (1, 3)}
+    assert len(manifests) == len(runs)
 
 
 def test_failures_are_an_error_that_lists_them_and_the_results_have_the_others(tmp_path: Path) -> None:

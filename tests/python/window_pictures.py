@@ -83,7 +83,7 @@ def take(display: Display, program: Path, folder: Path, name: str) -> Picture:
                 window.click(*robot_pixel(first))
             elif key in PLACES:
                 window.click(*PLACES[key])
-                time.sleep(0.3)
+                settled(window)  # what comes next is where it will be clicked
             else:
                 window.keys(key)
         time.sleep(0.3)

@@ -118,7 +118,7 @@ def attempt_alone(task: Task, number: int) -> Outcome:
     is_kept = temporary.is_kept
     try:
         outcome = attempt_in(folder, task, number)
-        outcome = with_kept_file(outcome, task)
+        outcome = with_moved_file(outcome, task)
         is_kept |= bool(outcome.problem)
         return replace(outcome, folder=str(folder) if is_kept else "")
     finally:
@@ -138,7 +138,7 @@ def attempt_in_parts(task: Task, number: int) -> Outcome:
         if its_lock is None:
             return attempt_alone(task, number)
         saved = SavedRun(folder, task, number)
-        outcome = with_kept_file(attempt_from_state(saved, its_lock), task)
+        outcome = with_moved_file(attempt_from_state(saved, its_lock), task)
         is_kept = task.settings.temporary.is_kept
         if outcome.file is not None:
             saved.finish()
@@ -281,30 +281,19 @@ def disk_full(temporary: TemporaryFolder) -> str:
     return f"the disk of {temporary.path} is full; free space, then give the same command again"
 
 
-def with_kept_file(outcome: Outcome, task: Task) -> Outcome:
+def with_moved_file(outcome: Outcome, task: Task) -> Outcome:
     """Put the data file of a run that is done where finished runs are, and return the run with that path.
+
+    If folders are kept, the file stays in that of the run, until the batch has written down there what the run is.
 
     Raises:
         OSError: It cannot be put there.
     """
-    if outcome.file is None:
+    if outcome.file is None or task.settings.temporary.is_kept:
         return outcome
     result = task.result_of(outcome.file.retry_attempt)
-    keep(outcome.file.path, result, as_copy=task.settings.temporary.is_kept)
+    outcome.file.path.replace(result)
     return replace(outcome, file=replace(outcome.file, path=result))
-
-
-def keep(data: Path, result: Path, as_copy: bool) -> None:
-    """Put a data file where finished runs are; it appears there as a whole."""
-    if as_copy:
-        scratch = result.with_suffix(".copy")
-        scratch.unlink(missing_ok=True)
-        try:
-            os.link(data, scratch)
-        except OSError:
-            shutil.copyfile(data, scratch)
-        data = scratch
-    data.replace(result)
 
 
 def do_run(task: Task) -> Outcome:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import os
+import shutil
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -11,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pogosim.batch.configuration import Configuration
-from pogosim.batch.errors import BatchError
+from pogosim.batch.errors import BatchError, cannot
 from pogosim.batch.manifests import TASK, task_entries, write_json
 from pogosim.batch.option_words import chosen_in
 from pogosim.batch.parts import PLAIN, Format
@@ -74,8 +76,11 @@ class Execution:
     def ended(self, outcomes: Generator[Outcome, None, None]) -> Generator[tuple[Task, Outcome], None, None]:
         """Let a backend do runs; yields each that has ended, with what became of it.
 
+        If folders are kept, a run counts as finished when the caller asks for the next one: what it has written about
+        the run is there by then.
+
         Raises:
-            BatchError: The others would fail in the same way as one that did.
+            BatchError: The others would fail in the same way as one that did; or a data file cannot be kept.
         """
         with contextlib.closing(outcomes):
             for outcome in outcomes:
@@ -89,6 +94,8 @@ class Execution:
                     self.finished[task.key] = shared(outcome.file)
                 said, first = self.messages(outcome.log, task), self.messages(outcome.first_problem, task)
                 yield task, replace(outcome, log=said, first_problem=first)
+                if outcome.file is not None and task.settings.temporary.is_kept:
+                    self.keep_copy(task)
 
     def take(self, outcomes: Generator[Outcome, None, None], total: int, with_progress: bool = False) -> None:
         """Let a backend do runs, and show how many are done; on a terminal always, elsewhere as asked for.
@@ -158,6 +165,20 @@ class Execution:
             self.checked.add(names)
             check_columns(schema, list(combination.columns), self.program, self.layout)
 
+    def keep_copy(self, task: Task) -> None:
+        """Put the data file of a finished run where finished runs are; it stays in its folder, too.
+
+        Raises:
+            BatchError: It cannot be put there.
+        """
+        file = self.finished[task.key]
+        result = task.result_of(file.retry_attempt)
+        try:
+            copy_whole(file.path, result)
+        except OSError as error:
+            raise cannot("write", result, error) from None
+        self.finished[task.key] = replace(file, path=result)
+
     def keep_manifest(self, task: Task, folder: str) -> None:
         """Write down in the folder of a finished run, if it stays, what the run is.
 
@@ -175,3 +196,18 @@ class Execution:
                 place = first.with_name(f"{first.name}_as_{number}")
                 entries["data_file"] = f"../{first.name}/{entries['data_file']}"
             write_json(place / TASK, entries)
+
+
+def copy_whole(data: Path, result: Path) -> None:
+    """Copy a data file, or link it where that is possible; it appears as a whole.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    scratch = result.with_suffix(".copy")
+    scratch.unlink(missing_ok=True)
+    try:
+        os.link(data, scratch)
+    except OSError:
+        shutil.copyfile(data, scratch)
+    scratch.replace(result)
