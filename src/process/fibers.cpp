@@ -60,11 +60,10 @@ public:
 #ifdef MADV_NOHUGEPAGE
         madvise(place, mapped_bytes_, MADV_NOHUGEPAGE);  // else a stack takes 2 MB as soon as it is used
 #endif
-        if (__asan_unpoison_memory_region != nullptr) {
-            __asan_unpoison_memory_region(place, mapped_bytes_);
-        }
+        forget_frames();
     }
     ~Stack() {
+        forget_frames();  // what is mapped here next, such as a library, is no stack
         munmap(mapping_, mapped_bytes_);
     }
     Stack(Stack const&) = delete;
@@ -75,6 +74,13 @@ public:
     }
 
 private:
+    /// Code that was left within a call has variables that a sanitizer watches.
+    void forget_frames() {
+        if (__asan_unpoison_memory_region != nullptr) {
+            __asan_unpoison_memory_region(mapping_, mapped_bytes_);
+        }
+    }
+
     std::size_t mapped_bytes_;
     std::byte* mapping_ = nullptr;
 };
