@@ -23,9 +23,10 @@ else()
     set_target_properties(pogosim_library PROPERTIES
         VERSION "${PROJECT_VERSION}"
         SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
-    set_target_properties(pogosim_library ${tables} PROPERTIES
-        INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}"
-        INSTALL_RPATH_USE_LINK_PATH ON)
+    set_target_properties(pogosim_library ${tables} PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+    set_target_properties(${tables} PROPERTIES INSTALL_RPATH "${PogosimArrow_LIBRARY_DIR}")
+    # Else CMake makes room for the longer one of two paths with colons, and libraries are looked for in the working folder.
+    set_target_properties(pogosim_library ${tables} pogosim_without_program PROPERTIES BUILD_WITH_INSTALL_RPATH ON)
 endif()
 target_include_directories(pogosim INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import time
 from collections.abc import Mapping
@@ -467,6 +468,15 @@ def test_library_needs_nothing_of_sdl() -> None:
     needed = subprocess.run(["ldd", str(library)], capture_output=True, text=True, check=True).stdout
     assert "SDL" not in needed
     assert "X11" not in needed
+
+
+def test_libraries_are_not_looked_for_in_the_working_folder() -> None:
+    """An empty entry of the path within a library stands for it."""
+    folder = build_folder() / "src"
+    for file in [*folder.glob("*.so"), folder / "pogosim-without-program"]:
+        said = subprocess.run(["readelf", "-d", str(file)], capture_output=True, text=True, check=True).stdout
+        for path in re.findall(r"\(R(?:UN)?PATH\).*\[(.*)\]", said):
+            assert all(entry.startswith(("/", "$ORIGIN")) for entry in path.split(":")), f"{file}: {path}"
 
 
 @pytest.mark.parametrize("name", sorted(PICTURES))
