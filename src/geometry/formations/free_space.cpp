@@ -13,6 +13,9 @@ constexpr int kMostPushes = 20;
 constexpr double kAreaPoints = 2.0e4;      // in the arena, to estimate what part of it is free
 constexpr double kMostAreaPoints = 1.0e6;  // in its bounding box
 
+constexpr std::size_t kCellsPerSide = 64;  // of the grid over the bounds: most of them are far from walls
+constexpr float kCellMargin = 0.01F;       // of a cell's size: rounding is far below
+
 std::size_t count_edges(Arena const& arena) {
     std::size_t count = 0;
     for (Polygon const& polygon : arena.polygons) {
@@ -39,6 +42,7 @@ FreeSpace::FreeSpace(Arena const& arena, std::span<Obstacle const> obstacles)
         auto const [top, bottom] = std::minmax(walls_[w].from.y, walls_[w].to.y);
         bands_.add(w, top, bottom);
     }
+    find_sides();
 }
 
 void FreeSpace::add_walls(Polygon const& polygon, bool is_hole) {
@@ -56,10 +60,70 @@ void FreeSpace::add_walls(Polygon const& polygon, bool is_hole) {
     }
 }
 
+std::size_t FreeSpace::cell_at(Vec2 point) const {
+    constexpr auto kMost = static_cast<float>(kCellsPerSide - 1);
+    Vec2 const size = bounds_.size();
+    float const column = (point.x - bounds_.min.x) / size.x * static_cast<float>(kCellsPerSide);
+    float const row = (point.y - bounds_.min.y) / size.y * static_cast<float>(kCellsPerSide);
+    return static_cast<std::size_t>(std::clamp(row, 0.0F, kMost)) * kCellsPerSide +
+           static_cast<std::size_t>(std::clamp(column, 0.0F, kMost));
+}
+
+Vec2 FreeSpace::centre_of(std::size_t cell) const {
+    constexpr float kPart = 1.0F / static_cast<float>(kCellsPerSide);
+    Vec2 const size = bounds_.size();
+    return bounds_.min + Vec2{(static_cast<float>(cell % kCellsPerSide) + 0.5F) * kPart * size.x,
+                              (static_cast<float>(cell / kCellsPerSide) + 0.5F) * kPart * size.y};
+}
+
+/// Marks the cells that a wall comes near as unknown: those around each piece of it that is shorter than a cell.
+void FreeSpace::mark_cells_by(Wall const& wall) {
+    Vec2 const cell = (1.0F / static_cast<float>(kCellsPerSide)) * bounds_.size();
+    Vec2 const way = wall.to - wall.from;
+    Vec2 const margin = kCellMargin * cell;
+    int const pieces = 1 + static_cast<int>(std::max(std::fabs(way.x) / cell.x, std::fabs(way.y) / cell.y));
+    Vec2 const step = (1.0F / static_cast<float>(pieces)) * way;
+    for (int piece = 0; piece < pieces; ++piece) {
+        Vec2 const a = wall.from + static_cast<float>(piece) * step;
+        Vec2 const b = a + step;
+        std::size_t const first = cell_at(Vec2{std::min(a.x, b.x), std::min(a.y, b.y)} - margin);
+        std::size_t const last = cell_at(Vec2{std::max(a.x, b.x), std::max(a.y, b.y)} + margin);
+        for (std::size_t row = first / kCellsPerSide; row <= last / kCellsPerSide; ++row) {
+            for (std::size_t column = first % kCellsPerSide; column <= last % kCellsPerSide; ++column) {
+                sides_[row * kCellsPerSide + column] = Side::kUnknown;
+            }
+        }
+    }
+}
+
+void FreeSpace::find_sides() {
+    Vec2 const size = bounds_.size();
+    bool const has_area = size.x > 0.0F && size.y > 0.0F;
+    sides_.assign(kCellsPerSide * kCellsPerSide, has_area ? Side::kOutside : Side::kUnknown);
+    if (!has_area) {
+        return;
+    }
+    std::ranges::for_each(walls_, [&](Wall const& wall) { mark_cells_by(wall); });
+    for (std::size_t cell = 0; cell < sides_.size(); ++cell) {
+        if (sides_[cell] == Side::kUnknown) {
+            continue;
+        }
+        // Cells that follow each other with no wall between are on the same side.
+        bool const is_next = cell % kCellsPerSide > 0 && sides_[cell - 1] != Side::kUnknown;
+        sides_[cell] = is_next ? sides_[cell - 1] : is_enclosed(centre_of(cell)) ? Side::kInside : Side::kOutside;
+    }
+}
+
 bool FreeSpace::contains(Vec2 point) const {
     if (point.y < bounds_.min.y || point.y > bounds_.max.y) {
         return false;
     }
+    Side const side = sides_[cell_at(point)];
+    // Beside the bounds, the nearest cell may be known to be outside, never inside: a wall is at the bounds.
+    return side == Side::kUnknown ? is_enclosed(point) : side == Side::kInside;
+}
+
+bool FreeSpace::is_enclosed(Vec2 point) const {
     bool inside = false;
     for (std::uint32_t const w : bands_.at(point.y)) {
         inside ^= ray_crosses(walls_[w].from, walls_[w].to, point);
@@ -69,6 +133,9 @@ bool FreeSpace::contains(Vec2 point) const {
 
 FreeSpace::Wall const* FreeSpace::nearest_wall_within(Vec2 point, float reach) const {
     Wall const* nearest = nullptr;
+    if (reach <= 0.0F) {
+        return nearest;
+    }
     float nearest_squared = reach * reach;
     bands_.for_each_between(point.y - reach, point.y + reach, [&](std::uint32_t w) {
         Wall const& wall = walls_[w];

@@ -40,8 +40,16 @@ private:
         Vec2 inward;  // unit normal towards the arena
     };
 
+    /// Where a cell of a grid over the bounds is, as a whole.
+    enum class Side : std::uint8_t { kInside, kOutside, kUnknown };  // unknown: a wall comes near
+
     void add_walls(Polygon const& polygon, bool is_hole);
+    void mark_cells_by(Wall const& wall);
+    void find_sides();
+    std::size_t cell_at(Vec2 point) const;
+    Vec2 centre_of(std::size_t cell) const;
     bool contains(Vec2 point) const;
+    bool is_enclosed(Vec2 point) const;
     Wall const* nearest_wall_within(Vec2 point, float reach) const;
 
     Box bounds_;
@@ -49,6 +57,7 @@ private:
     std::vector<Wall> walls_;
     std::vector<double> length_up_to_;  // of the walls, added up
     BandIndex bands_;                   // of walls
+    std::vector<Side> sides_;           // of each cell, row by row
     ObstacleField obstacles_;
 };
 

@@ -20,14 +20,17 @@ std::uint32_t interval_of(float value, float min, float size, int levels) {
     return static_cast<std::uint32_t>(std::clamp(place, 0.0F, count - 1.0F));
 }
 
-/// The number of a leaf: the bits of column and row in turn.
-std::uint32_t morton(std::uint32_t column, std::uint32_t row, int levels) {
-    std::uint32_t number = 0;
-    for (int bit = levels - 1; bit >= 0; --bit) {
-        number =
-            number << 2U | (row >> static_cast<unsigned>(bit) & 1U) << 1U | (column >> static_cast<unsigned>(bit) & 1U);
-    }
-    return number;
+/// The lower 16 bits, with a 0 before each.
+std::uint32_t spread_bits(std::uint32_t value) {
+    value = (value | value << 8U) & 0x00FF00FFU;
+    value = (value | value << 4U) & 0x0F0F0F0FU;
+    value = (value | value << 2U) & 0x33333333U;
+    return (value | value << 1U) & 0x55555555U;
+}
+
+/// The number of a leaf: the bits of row and column in turn.
+std::uint32_t morton(std::uint32_t column, std::uint32_t row) {
+    return spread_bits(row) << 1U | spread_bits(column);
 }
 
 /// A quarter of a box, in Morton order.
@@ -102,7 +105,7 @@ PowerCells::PowerCells(Box const& bounds_mm, std::span<Vec2 const> points_mm)
     Vec2 const size = bounds_mm.size();
     for (Vec2 const point : points_mm) {
         std::uint32_t const leaf = morton(interval_of(point.x, bounds_mm.min.x, size.x, depth),
-                                          interval_of(point.y, bounds_mm.min.y, size.y, depth), depth);
+                                          interval_of(point.y, bounds_mm.min.y, size.y, depth));
         leaf_of.push_back(leaf);
         leaves[leaf].sum.add({.x_mm = point.x, .y_mm = point.y, .count = 1});
     }
