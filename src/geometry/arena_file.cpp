@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <list>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -110,9 +112,9 @@ bool says_periodic(Drawing const& drawing, CsvLine const& comment) {
     return true;
 }
 
-Drawing parse(std::filesystem::path const& path) {
+Drawing parse(std::string_view text, std::filesystem::path const& path) {
     Drawing drawing{path.string(), {}, {}, false};
-    CsvText const csv = read_csv(path);
+    CsvText const csv = csv_in(text, path);
     for (CsvLine const& comment : csv.comments) {
         drawing.periodic = says_periodic(drawing, comment) || drawing.periodic;
     }
@@ -195,6 +197,48 @@ void check_nesting(Drawing const& drawing, OutlineSurvey const& survey) {
     }
 }
 
+ArenaOutline outline_in(std::string_view text, std::filesystem::path const& path) {
+    Drawing drawing = parse(text, path);
+    drop_closing_corners(drawing);
+    check_corner_counts(drawing);
+    check_areas(drawing);
+    OutlineSurvey const survey = survey_outlines(drawing.polygons);
+    check_crossings(drawing, survey);
+    check_nesting(drawing, survey);
+    return {std::move(drawing.polygons), drawing.name, drawing.periodic};
+}
+
+/// A host makes many runs in few arenas, whose files are read each time, but looked through once.
+struct KnownOutline {
+    std::string text;
+    ArenaOutline outline;
+};
+
+constexpr std::size_t kMostKnown = 8;
+constexpr std::size_t kMostBytes = 1U << 16U;  // of a file: larger ones are not kept in memory
+
+std::mutex mutex_of_known;
+std::list<KnownOutline> known_outlines;  // those that were used last come first
+
+std::optional<ArenaOutline> known_outline(std::string_view text, std::string const& source) {
+    std::lock_guard const lock(mutex_of_known);
+    for (auto known = known_outlines.begin(); known != known_outlines.end(); ++known) {
+        if (known->outline.source == source && known->text == text) {
+            known_outlines.splice(known_outlines.begin(), known_outlines, known);
+            return known->outline;
+        }
+    }
+    return std::nullopt;
+}
+
+void keep_outline(std::string text, ArenaOutline const& outline) {
+    std::lock_guard const lock(mutex_of_known);
+    known_outlines.push_front({.text = std::move(text), .outline = outline});
+    if (known_outlines.size() > kMostKnown) {
+        known_outlines.pop_back();
+    }
+}
+
 }  // namespace
 
 bool is_empty_arena_file(std::filesystem::path const& path) {
@@ -204,14 +248,15 @@ bool is_empty_arena_file(std::filesystem::path const& path) {
 }
 
 ArenaOutline read_arena_file(std::filesystem::path const& path) {
-    Drawing drawing = parse(path);
-    drop_closing_corners(drawing);
-    check_corner_counts(drawing);
-    check_areas(drawing);
-    OutlineSurvey const survey = survey_outlines(drawing.polygons);
-    check_crossings(drawing, survey);
-    check_nesting(drawing, survey);
-    return {std::move(drawing.polygons), drawing.name, drawing.periodic};
+    std::string text = read_text(path);
+    if (std::optional<ArenaOutline> known = known_outline(text, path.string())) {
+        return *std::move(known);
+    }
+    ArenaOutline outline = outline_in(text, path);
+    if (text.size() <= kMostBytes) {
+        keep_outline(std::move(text), outline);
+    }
+    return outline;
 }
 
 }  // namespace pogosim

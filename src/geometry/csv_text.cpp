@@ -95,6 +95,8 @@ std::string without_quotes(std::string_view field) {
     return text;
 }
 
+}  // namespace
+
 std::string read_text(std::filesystem::path const& path) {
     std::error_code error;
     std::filesystem::file_status const status = std::filesystem::status(path, error);
@@ -116,10 +118,7 @@ std::string read_text(std::filesystem::path const& path) {
     return text;
 }
 
-}  // namespace
-
-CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style) {
-    std::string const text = read_text(path);
+CsvText csv_in(std::string_view text, std::filesystem::path const& path, CsvStyle const& style) {
     std::string_view rest = text;
     if (rest.starts_with(kByteOrderMark)) {
         rest.remove_prefix(kByteOrderMark.size());
@@ -143,6 +142,10 @@ CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style) {
         rest.remove_prefix(rest.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest.size(), 1));
     }
     return csv;
+}
+
+CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style) {
+    return csv_in(read_text(path), path, style);
 }
 
 std::vector<std::string> split_fields(std::string_view line, char delimiter) {

@@ -25,9 +25,15 @@ struct CsvText {
     std::vector<CsvLine> comments;  // lines that start with the prefix, without it
 };
 
-/// All lines of a text file. Accepts a UTF-8 byte order mark and line ends of every kind; a field in double quotes may
-/// have line ends (RFC 4180). Throws ConfigError when it is not a regular file that can be read, is larger than
-/// 256 MiB, or does not close its quotes.
+/// The bytes of a text file. Throws ConfigError when it is not a regular file that can be read, or is larger than
+/// 256 MiB.
+std::string read_text(std::filesystem::path const& path);
+
+/// All lines of a text, which is that of a file. Accepts a UTF-8 byte order mark and line ends of every kind; a field
+/// in double quotes may have line ends (RFC 4180). Throws ConfigError when quotes are not closed.
+CsvText csv_in(std::string_view text, std::filesystem::path const& path, CsvStyle const& style = {});
+
+/// csv_in() of read_text().
 CsvText read_csv(std::filesystem::path const& path, CsvStyle const& style = {});
 
 /// Fields between delimiters, without spaces and tabs at either end, nor one pair of double quotes around them. In

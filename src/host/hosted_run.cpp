@@ -33,9 +33,8 @@ void check_program_file(Scenario const& scenario, char const* program) {
     }
 }
 
-Scenario scenario_of(pogosim_run_options const& options) {
+Scenario scenario_of(pogosim_run_options const& options, bool is_firmware) {
     std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
-    bool const is_firmware = options.program != nullptr && is_firmware_file(options.program);
     Scenario scenario = load_known_scenario(
         options.configuration,
         {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""},
@@ -73,14 +72,15 @@ pogosim_run::pogosim_run(pogosim_run_options const& options) : number(++runs) {
     logging.on_line = [this](LogLine const& line) { lines_.push_back(line); };
     log_ = std::make_shared<Log>(logging);
     LogScope const scope(log_.get());
-    if (options.program != nullptr && !is_firmware_file(options.program)) {
+    bool const is_firmware = options.program != nullptr && is_firmware_file(options.program);
+    if (options.program != nullptr && !is_firmware) {
         program_.emplace(options.program);
     }
     RunOptions run_options;
     run_options.log = log_;
     run_options.conversions = options.strict != 0 ? Conversions::typed : Conversions::lenient;
-    simulation_ =
-        std::make_unique<Simulation>(program_ ? program_->image() : ProgramImage{}, scenario_of(options), run_options);
+    simulation_ = std::make_unique<Simulation>(program_ ? program_->image() : ProgramImage{},
+                                               scenario_of(options, is_firmware), run_options);
     for (Category const& category : simulation_->world().categories) {
         categories_ += (categories_.empty() ? "" : "\n") + category.name;
     }

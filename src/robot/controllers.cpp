@@ -390,11 +390,12 @@ void Controllers::start() {
         }
         return bytes;
     };
-    std::size_t const allocated_before = allocated_by_robots();
+    // In a host's process, other threads allocate, too; and to count takes a tenth of a reset.
+    bool const is_alone = run_stage() != RunStage::hosted;
+    std::size_t const before = is_alone ? allocated_by_robots() : 0;
     start_programs();
-    // In a host's process, other threads allocate, too.
-    std::size_t const allocated_now = run_stage() == RunStage::hosted ? 0 : allocated_by_robots();
-    warn_of_large_heap(allocated_now - std::min(allocated_before, allocated_now), driven_count(), memory_bytes);
+    std::size_t const now = is_alone ? allocated_by_robots() : 0;
+    warn_of_large_heap(now - std::min(before, now), driven_count(), memory_bytes);
 }
 
 void Controllers::start_programs() {

@@ -44,7 +44,7 @@ std::uint32_t seed_of(Scenario const& scenario) {
 
 std::uint32_t thread_count(Scenario const& scenario, World const& world) {
     constexpr std::size_t kObjectsPerThread = 2000;
-    std::size_t const processors = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
+    static std::size_t const processors = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
     if (!scenario.threads) {
         return static_cast<std::uint32_t>(
             std::clamp<std::size_t>(world.objects.size() / kObjectsPerThread, 1, processors));

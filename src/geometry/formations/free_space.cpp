@@ -13,7 +13,7 @@ constexpr int kMostPushes = 20;
 constexpr double kAreaPoints = 2.0e4;      // in the arena, to estimate what part of it is free
 constexpr double kMostAreaPoints = 1.0e6;  // in its bounding box
 
-constexpr std::size_t kCellsPerSide = 64;  // of the grid over the bounds: most of them are far from walls
+constexpr std::size_t kCellsPerSide = 32;  // of the grid over the bounds: most of them are far from walls
 constexpr float kCellMargin = 0.01F;       // of a cell's size: rounding is far below
 
 std::size_t count_edges(Arena const& arena) {
