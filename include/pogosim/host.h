@@ -262,8 +262,8 @@ int pogosim_run_take_turn(pogosim_run* run, struct pogosim_turn* turn, double bu
 int pogosim_threads_open(int count, pogosim_threads** threads);
 
 /// Many runs make the steps that are left, as many at a time as there are threads, each by pogosim_run_step(). No run
-/// begins a further step after `budget_s` seconds, but each makes at least one. The call fails with the first run that
-/// fails in it; the others go on nevertheless. A run may be given only once.
+/// begins a further step after `budget_s` seconds (infinity: no limit), but each makes at least one. The call fails with
+/// the first run that fails in it; the others go on nevertheless. A run may be given only once.
 int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, struct pogosim_turn* turns, size_t count,
                          double budget_s);
 
@@ -275,8 +275,9 @@ void pogosim_threads_close(pogosim_threads* threads);
 
 /// Copies an array of many runs, one after the other: that of pogosim_run_array(), or, if `category` is not NULL, of
 /// pogosim_run_brain_array(). Arrays of bodies ("bodies.position") have a row for each robot in place of one for each
-/// body, NaN for robots without one; "light_levels" are those of pogosim_run_light_levels(). `bytes_each`: size of the
-/// array of one run; it fails where that is another one.
+/// body, NaN for robots without one; "light_levels" are those of pogosim_run_light_levels(), and numbers of
+/// pogosim_run_number() are one double each. `bytes_each`: size of the array of one run; it fails where that is another
+/// one.
 int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* category, char const* name, void* into,
                       size_t bytes_each);
 

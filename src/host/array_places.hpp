@@ -1,12 +1,13 @@
 // Where arrays of the simulator are, as pogosim/host.h says it.
 #pragma once
 
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
-#include <string>
+#include <initializer_list>
+#include <iterator>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -17,22 +18,22 @@ namespace pogosim {
 
 static_assert(std::endian::native == std::endian::little, "array types are named for little-endian machines");
 
+/// Of numbers: "<f4".
 template <class T>
-std::string type_of() {
-    char const kind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';
-    return fmt::format("{}{}{}", sizeof(T) == 1 ? '|' : '<', kind, sizeof(T));
+std::string_view type_of() {
+    constexpr char kKind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';
+    static constexpr std::array kType{sizeof(T) == 1 ? '|' : '<', kKind, static_cast<char>('0' + sizeof(T))};
+    return {kType.data(), kType.size()};
 }
 
-inline pogosim_array described(void const* data, std::string const& type, std::vector<std::int64_t> const& shape,
-                               std::vector<std::int64_t> const& strides) {
+inline pogosim_array described(void const* data, std::string_view type, std::initializer_list<std::int64_t> shape,
+                               std::initializer_list<std::int64_t> strides) {
     pogosim_array array = {};
     array.data = const_cast<void*>(data);  // host.h says which arrays may be written
-    std::strncpy(array.type, type.c_str(), sizeof(array.type) - 1);
+    type.copy(array.type, sizeof(array.type) - 1);
     array.dimensions = static_cast<int>(shape.size());
-    for (std::size_t i = 0; i < shape.size(); ++i) {
-        array.shape[i] = shape[i];
-        array.stride_bytes[i] = strides[i];
-    }
+    std::ranges::copy(shape, std::begin(array.shape));
+    std::ranges::copy(strides, std::begin(array.stride_bytes));
     return array;
 }
 

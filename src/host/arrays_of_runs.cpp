@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -25,75 +27,85 @@ constexpr std::string_view kOfBodies = "bodies.";
 constexpr std::string_view kLightLevels = "light_levels";  // which are in no memory
 constexpr std::array kWritten{"motors", "leds", "send_bytes", "send_length", "send_face"};
 
-std::size_t bytes_of_value(pogosim_array const& array) {
-    return static_cast<std::size_t>(std::strtoul(array.type + 2, nullptr, 10));
-}
+/// The rows of an array of numbers; each is without gaps within itself.
+struct Rows {
+    std::byte* data;
+    std::size_t count;
+    std::ptrdiff_t stride_bytes;
+    std::size_t bytes;  // of each
 
-std::size_t values_in_row(pogosim_array const& array) {
-    std::size_t values = 1;
+    std::byte* at(std::size_t row) const { return data + static_cast<std::ptrdiff_t>(row) * stride_bytes; }
+    bool is_dense() const { return stride_bytes == static_cast<std::ptrdiff_t>(bytes); }
+};
+
+Rows rows_of(pogosim_array const& array) {
+    std::size_t bytes = 0;  // of a value: "<f4", "|V48"
+    std::from_chars(array.type + 2, std::end(array.type), bytes);
     for (int i = 1; i < array.dimensions; ++i) {
-        values *= static_cast<std::size_t>(array.shape[i]);
+        bytes *= static_cast<std::size_t>(array.shape[i]);
     }
-    return values;
+    return {.data = static_cast<std::byte*>(const_cast<void*>(array.data)),
+            .count = static_cast<std::size_t>(array.shape[0]),
+            .stride_bytes = array.stride_bytes[0],
+            .bytes = bytes};
 }
 
-/// Rows are without gaps within themselves, in all arrays of a run.
-std::size_t bytes_of_row(pogosim_array const& array) {
-    return values_in_row(array) * bytes_of_value(array);
-}
-
-std::byte* row_of(pogosim_array const& array, std::int64_t row) {
-    return static_cast<std::byte*>(const_cast<void*>(array.data)) + row * array.stride_bytes[0];
-}
-
-void check_size(std::size_t run, std::int64_t rows, pogosim_array const& array, std::size_t bytes) {
-    if (static_cast<std::size_t>(rows) * bytes_of_row(array) != bytes) {
+void check_size(std::size_t run, std::size_t rows, std::size_t bytes_of_row, std::size_t bytes) {
+    if (rows * bytes_of_row != bytes) {
         throw ConfigError(fmt::format("run {}: the array has {} rows of {} bytes, and there is room for {} bytes", run,
-                                      rows, bytes_of_row(array), bytes));
+                                      rows, bytes_of_row, bytes));
     }
 }
 
 /// All arrays of bodies are of such numbers.
-void fill_absent(std::byte* row, pogosim_array const& array) {
+void fill_absent(std::byte* row, std::size_t bytes) {
     float const nan = std::numeric_limits<float>::quiet_NaN();
-    for (std::size_t i = 0; i < values_in_row(array); ++i) {
-        std::memcpy(row + i * sizeof(nan), &nan, sizeof(nan));
+    for (std::size_t at = 0; at < bytes; at += sizeof(nan)) {
+        std::memcpy(row + at, &nan, sizeof(nan));
     }
 }
 
-void read_bodies(std::size_t run, World const& world, pogosim_array const& array, std::byte* into, std::size_t bytes) {
+void read_bodies(std::size_t run, World const& world, Rows const& rows, std::byte* into, std::size_t bytes) {
     std::span const bodies(world.robots.body.data(), world.robots.size());
-    check_size(run, static_cast<std::int64_t>(bodies.size()), array, bytes);
+    check_size(run, bodies.size(), rows.bytes, bytes);
     for (std::uint32_t const body : bodies) {
         if (body == kNone) {
-            fill_absent(into, array);
+            fill_absent(into, rows.bytes);
         } else {
-            std::memcpy(into, row_of(array, body), bytes_of_row(array));
+            std::memcpy(into, rows.at(body), rows.bytes);
         }
-        into += bytes_of_row(array);
+        into += rows.bytes;
     }
 }
 
 void read_light(std::size_t run, World const& world, std::byte* into, std::size_t bytes) {
     std::vector<double> levels(world.robots.size());
-    check_size(run, static_cast<std::int64_t>(levels.size()), numbers(levels), bytes);
+    check_size(run, levels.size(), sizeof(double), bytes);
     read_light_levels(world, levels.data());
     std::memcpy(into, levels.data(), bytes);
 }
 
-void read_rows(std::size_t run, pogosim_array const& array, std::byte* into, std::size_t bytes) {
-    check_size(run, array.shape[0], array, bytes);
-    for (std::int64_t row = 0; row < array.shape[0]; ++row) {
-        std::memcpy(into, row_of(array, row), bytes_of_row(array));
-        into += bytes_of_row(array);
+void read_number(std::size_t run, double value, std::byte* into, std::size_t bytes) {
+    check_size(run, 1, sizeof(value), bytes);
+    std::memcpy(into, &value, sizeof(value));
+}
+
+void read_rows(std::size_t run, Rows const& rows, std::byte* into, std::size_t bytes) {
+    check_size(run, rows.count, rows.bytes, bytes);
+    if (rows.is_dense() && bytes > 0) {
+        std::memcpy(into, rows.data, bytes);
+        return;
+    }
+    for (std::size_t row = 0; row < rows.count; ++row) {
+        std::memcpy(into + row * rows.bytes, rows.at(row), rows.bytes);
     }
 }
 
-void write_rows(std::size_t run, pogosim_array const& array, std::byte const* from, std::size_t bytes) {
-    check_size(run, array.shape[0], array, bytes);
-    for (std::int64_t row = 0; row < array.shape[0]; ++row) {
-        std::memcpy(row_of(array, row), from, bytes_of_row(array));
-        from += bytes_of_row(array);
+/// All arrays that may be written are dense.
+void write_rows(std::size_t run, Rows const& rows, std::byte const* from, std::size_t bytes) {
+    check_size(run, rows.count, rows.bytes, bytes);
+    if (bytes > 0) {
+        std::memcpy(rows.data, from, bytes);
     }
 }
 
@@ -121,11 +133,15 @@ int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* catego
                 read_light(i, runs[i]->simulation().world(), place, bytes_each);
                 continue;
             }
-            pogosim_array const array = array_in(*runs[i], category, name);
+            if (std::optional<double> const value = number_of(*runs[i], name); value && category == nullptr) {
+                read_number(i, *value, place, bytes_each);
+                continue;
+            }
+            Rows const rows = rows_of(array_in(*runs[i], category, name));
             if (of_bodies) {
-                read_bodies(i, runs[i]->simulation().world(), array, place, bytes_each);
+                read_bodies(i, runs[i]->simulation().world(), rows, place, bytes_each);
             } else {
-                read_rows(i, array, place, bytes_each);
+                read_rows(i, rows, place, bytes_each);
             }
         }
         return POGOSIM_OK;
@@ -141,7 +157,7 @@ int pogosim_runs_write(pogosim_run* const* runs, size_t count, char const* categ
         auto const* place = static_cast<std::byte const*>(from);
         for (std::size_t i = 0; i < count; ++i, place += bytes_each) {
             std::lock_guard const lock(runs[i]->in_use);
-            write_rows(i, brain_array_of(*runs[i], category, name), place, bytes_each);
+            write_rows(i, rows_of(brain_array_of(*runs[i], category, name)), place, bytes_each);
         }
         return POGOSIM_OK;
     });

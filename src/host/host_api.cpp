@@ -50,6 +50,11 @@ constexpr std::array kNumbers{
 
 }  // namespace
 
+std::optional<double> pogosim::number_of(pogosim_run const& run, std::string_view name) {
+    auto const* const found = std::ranges::find(kNumbers, name, &NamedNumber::name);
+    return found == kNumbers.end() ? std::nullopt : std::optional(found->value(run));
+}
+
 void pogosim::read_light_levels(World const& world, double* levels) {
     for (std::size_t robot = 0; robot < world.robots.size(); ++robot) {
         std::uint32_t const body = world.robots.body[robot];
@@ -118,11 +123,9 @@ void pogosim_run_close(pogosim_run* run) {
 
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value) {
     std::lock_guard const lock(run->in_use);
-    for (NamedNumber const& known : kNumbers) {
-        if (known.name == name) {
-            *value = known.value(*run);
-            return POGOSIM_OK;
-        }
+    if (std::optional<double> const found = number_of(*run, name)) {
+        *value = *found;
+        return POGOSIM_OK;
     }
     return failed(fmt::format("a run has no number '{}'", name));
 }

@@ -85,6 +85,9 @@ struct RunFailure : std::runtime_error {
     ExitCode code;
 };
 
+/// The number of this name, as of pogosim_run_number(); nothing if there is none.
+std::optional<double> number_of(pogosim_run const& run, std::string_view name);
+
 /// The array of this name; nothing if there is none.
 std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
 

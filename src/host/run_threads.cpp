@@ -23,6 +23,7 @@ using namespace pogosim;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Deadline = std::chrono::time_point<Clock, std::chrono::duration<double>>;  // may be infinitely far
 
 constexpr int kMostHostThreads = 1024;
 
@@ -31,11 +32,11 @@ struct Work {
     std::span<pogosim_run* const> runs{};
     std::span<pogosim_turn> turns{};
     std::span<std::string> errors{};
-    Clock::time_point deadline{};
+    Deadline deadline{};
 };
 
-double seconds_until(Clock::time_point when) {
-    return std::chrono::duration<double>(when - Clock::now()).count();
+double seconds_until(Deadline when) {
+    return (when - Clock::now()).count();
 }
 
 void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {
@@ -84,10 +85,7 @@ public:
         auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
         {
             std::lock_guard const lock(mutex_);
-            work_ = {.runs = runs,
-                     .turns = turns,
-                     .errors = errors_,
-                     .deadline = std::chrono::time_point_cast<Clock::duration>(deadline)};
+            work_ = {.runs = runs, .turns = turns, .errors = errors_, .deadline = deadline};
             next_ = 0;
             ++call_;
             working_ = static_cast<int>(threads_.size());

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -118,7 +119,8 @@ private:
 /// Lets all runs make so many steps. Returns what each has done.
 std::vector<pogosim_turn> stepped(OpenRuns const& runs, pogosim_threads* threads, std::int64_t steps) {
     std::vector<pogosim_turn> turns(runs.size(), {.left = steps, .status = POGOSIM_OK, .has_messages = 0});
-    pogosim_threads_step(threads, runs.data(), turns.data(), turns.size(), 100.0);
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    pogosim_threads_step(threads, runs.data(), turns.data(), turns.size(), kNoLimit);
     return turns;
 }
 

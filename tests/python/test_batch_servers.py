@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 from batches import batch, results, start_batch, wait_for_simulators, wait_until_gone, write_options
 from pogosim.batch import run_server
-from pogosim.batch.run import RunSettings
+from pogosim.batch.execution import Execution
+from pogosim.batch.run import RunSettings, Task
 from pogosim.batch.run_server import NotServedError, RunServer, RunServers, ServerLostError
 from pogosim.batch.simulators import Simulators
 from pogosim.batch.temporary import TemporaryFolder
@@ -286,7 +287,8 @@ def test_examples_do_the_same(name: str, tmp_path: Path) -> None:
     check_same(tmp_path, *both_ways(tmp_path, example(name)))
 
 
-def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def servers_made(patched: pytest.MonkeyPatch) -> list[RunServer]:
+    """Return what will have the processes for many runs that are begun from now on."""
     made: list[RunServer] = []
     begin = RunServer.__init__
 
@@ -294,7 +296,12 @@ def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: p
         made.append(self)
         begin(self, *arguments)
 
-    monkeypatch.setattr(RunServer, "__init__", counted)
+    patched.setattr(RunServer, "__init__", counted)
+    return made
+
+
+def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = servers_made(monkeypatch)
     monkeypatch.setattr(Simulators, "run", None)  # what makes a process for a run
     write_options(tmp_path, {"simulation_time": 0.1})
     assert batch(tmp_path, "-r", "30", "-j", "2").code == 0
@@ -303,13 +310,44 @@ def test_batch_makes_as_many_processes_as_workers(tmp_path: Path, monkeypatch: p
 
 
 def test_server_is_replaced_before_what_runs_leave_adds_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = servers_made(monkeypatch)
     monkeypatch.setattr(run_server, "MOST_RUNS", 4)
     write_options(tmp_path / "few", {"simulation_time": 0.1})
     assert batch(tmp_path / "few", "-r", "9", "-j", "1").code == 0
+    assert [server.served for server in made] == [4, 4, 4, 4, 2]
     monkeypatch.undo()
     write_options(tmp_path / "many", {"simulation_time": 0.1})
     assert batch(tmp_path / "many", "-r", "9", "-j", "1").code == 0
     assert results(tmp_path / "few") == results(tmp_path / "many")
+
+
+def test_run_that_another_worker_has_done_may_lose_its_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The result is there; the run is done once more, alone."""
+    write_options(tmp_path, {"simulation_time": 0.1})
+    assert batch(tmp_path, "-r", "2", "-j", "1").code == 0
+    expected = results(tmp_path)
+    serve = RunServer.run
+
+    def lose(self: RunServer, arguments: list[str]) -> None:
+        serve(self, arguments)
+        text = Path(arguments[arguments.index("-c") + 1]).read_text()
+        for task in waiting:
+            if task.text in text and str(task.seed) in arguments:
+                shutil.copy(self.outputs / task.data, task.result_of(0))
+        raise ServerLostError
+
+    waiting: list[Task] = []
+    find = Execution.waiting
+
+    def noted(self: Execution) -> list[Task]:
+        waiting[:] = find(self)
+        return waiting
+
+    monkeypatch.setattr(Execution, "waiting", noted)
+    monkeypatch.setattr(RunServer, "run", lose)
+    again = batch(tmp_path, "-r", "2", "-j", "1")
+    assert again.code == 0, again.errors
+    assert results(tmp_path) == expected
 
 
 # ---- One server ----

@@ -296,3 +296,33 @@ def test_no_runs_make_no_steps(tmp_path: Path) -> None:
         assert runs.step() == []
         with pytest.raises(pogosim.SimulationError, match="no runs"):
             _ = runs.positions
+
+
+def test_brain_of_many_runs_shows_what_they_go_on_from(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        brain = runs.brain("robots")
+        names = ("angular_velocity", "acceleration", "photosensors", "received_count", "battery_mv")
+        brain.motors = [1023, 0, 0]
+        runs.step(20)
+        states = [sim.save() for sim in runs]
+        before = {name: getattr(brain, name).copy() for name in names}
+        brain.motors = [0, 1023, 0]
+        runs.step(50)
+        assert not np.array_equal(brain.angular_velocity, before["angular_velocity"])
+        runs[2].restore(states[2])
+        assert np.array_equal(brain.angular_velocity[2], before["angular_velocity"][2])
+        assert not np.array_equal(brain.angular_velocity[1], before["angular_velocity"][1])
+        for sim, state in zip(runs, states, strict=True):
+            sim.restore(state)
+        for name in names:
+            assert np.array_equal(getattr(brain, name), before[name])
+            assert np.array_equal(getattr(brain, name)[1], getattr(runs[1].brain("robots"), name))
+
+
+def test_runs_that_are_over_are_told_apart(tmp_path: Path) -> None:
+    with many(tmp_path, simulation_time=1.0) as runs:
+        assert runs.is_over.tolist() == [False] * 4
+        runs[1].step(1000)
+        runs[3].close()
+        assert runs.is_over.tolist() == [False, True, False, True]
+    assert runs.is_over.tolist() == [True] * 4

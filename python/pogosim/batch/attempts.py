@@ -100,9 +100,9 @@ def attempt_in_server(task: Task, number: int) -> Outcome | None:
         (server.outputs / task.data).replace(result)
         said = warnings_in(server.folder) if server.log.stat().st_size else ""
         server.clear()
-    if not result.is_file() or (file := task.read(result, replacement)) is None:
-        return None
-    return Outcome(task.key, attempts=number + 1, file=file, log=said, simulator_s=simulator_s)
+        if (file := task.read(result, replacement)) is not None:
+            return Outcome(task.key, attempts=number + 1, file=file, log=said, simulator_s=simulator_s)
+    return None
 
 
 def attempt_alone(task: Task, number: int) -> Outcome:

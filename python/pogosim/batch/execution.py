@@ -76,11 +76,8 @@ class Execution:
     def ended(self, outcomes: Generator[Outcome, None, None]) -> Generator[tuple[Task, Outcome], None, None]:
         """Let a backend do runs; yields each that has ended, with what became of it.
 
-        If folders are kept, a run counts as finished when the caller asks for the next one: what it has written about
-        the run is there by then.
-
         Raises:
-            BatchError: The others would fail in the same way as one that did; or a data file cannot be kept.
+            BatchError: The others would fail in the same way as one that did.
         """
         with contextlib.closing(outcomes):
             for outcome in outcomes:
@@ -94,8 +91,6 @@ class Execution:
                     self.finished[task.key] = shared(outcome.file)
                 said, first = self.messages(outcome.log, task), self.messages(outcome.first_problem, task)
                 yield task, replace(outcome, log=said, first_problem=first)
-                if outcome.file is not None and task.settings.temporary.is_kept:
-                    self.keep_copy(task)
 
     def take(self, outcomes: Generator[Outcome, None, None], total: int, with_progress: bool = False) -> None:
         """Let a backend do runs, and show how many are done; on a terminal always, elsewhere as asked for.
@@ -117,6 +112,7 @@ class Execution:
                             log.debug("run %d failed at first: %s", task.run, outcome.first_problem)
                         self.check_run(task)
                         self.keep_manifest(task, outcome.folder)
+                        self.keep_copy(task)
                     bar.update()
         finally:
             bar.close()
@@ -166,11 +162,15 @@ class Execution:
             check_columns(schema, list(combination.columns), self.program, self.layout)
 
     def keep_copy(self, task: Task) -> None:
-        """Put the data file of a finished run where finished runs are; it stays in its folder, too.
+        """Put the data file of a run where finished runs are, if it stays in a folder of its own, too.
+
+        The run counts as finished from then on, so what is written about it has to be there before.
 
         Raises:
             BatchError: It cannot be put there.
         """
+        if not task.settings.temporary.is_kept:
+            return
         file = self.finished[task.key]
         result = task.result_of(file.retry_attempt)
         try:

@@ -189,6 +189,7 @@ class Runs:
                     problem = self.problem_of(outcome)
                     if not problem:
                         execution.check_run(task)
+                        execution.keep_copy(task)
                     yield from take(task.key, task.replacement_in(outcome.attempts - 1), problem)
         finally:
             self.simulator_s += execution.simulator_s

@@ -89,11 +89,13 @@ class RunState:
 
     Attributes:
         known_pointer: `pointer` for code that has checked the process.
+        restored: How many times it has gone on from a saved state.
     """
 
     def __init__(self, run: OpenRun) -> None:
         self._run = run
         self.known_pointer = run.pointer
+        self.restored = 0
         self._process = os.getpid()
         self._arrays: dict[str, npt.NDArray[Any]] = {}
         self._writable: dict[str, npt.NDArray[Any]] = {}

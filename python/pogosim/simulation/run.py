@@ -336,6 +336,7 @@ class Simulation:
             if not isinstance(state, SavedState):
                 raise given.refused("state", "what save() has returned", state)
             check(library().pogosim_run_restore_state(self._run.pointer, state.pointer))
+            self._run.restored += 1
             self._settings, self._parameter_values = dict(state.settings), dict(state.parameters)
 
     def close(self) -> None:

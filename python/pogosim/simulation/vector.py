@@ -355,7 +355,11 @@ class VectorSimulation:
     @property
     def is_over(self) -> npt.NDArray[np.bool_]:
         """Which runs are over. Shape (runs,)."""
-        return np.array([simulation.is_over for simulation in self.simulations])
+        if self._is_closed or any(simulation._current.run is None for simulation in self.simulations):
+            return np.array([simulation.is_over for simulation in self.simulations])
+        over = np.empty(len(self.simulations))
+        self._runs().read("is_over", over)
+        return over.astype(bool)
 
     def close(self) -> None:
         """End all runs.

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
+from pogosim.simulation.arrays import RunState
 from pogosim.simulation.brain import RECEIVED, BrainArrays
 from pogosim.simulation.errors import ConfigurationError
 from pogosim.simulation.library import check, library
@@ -33,6 +34,11 @@ RECEIVED_IN_RUNS = np.dtype([("run", "<i4"), *RECEIVED.descr])
 TAKEN_BACK = "send_length"  # which a run sets to -1
 
 
+def moments_of(runs: ManyRuns) -> list[tuple[RunState, int]]:
+    """Return what changes when a run begins anew, or goes on from a state."""
+    return [(state, state.restored) for state in runs.states]
+
+
 class VectorBrain(BrainArrays):
     """The robots of a category with `brain: host` in all runs of a `VectorSimulation`: `runs.brain("robots")`.
 
@@ -55,7 +61,7 @@ class VectorBrain(BrainArrays):
         self._category = category
         self._robots = robots
         self._arrays: dict[str, npt.NDArray[Any]] = {}
-        self._seen: list[object] = []  # the runs that the arrays are of
+        self._seen: list[tuple[RunState, int]] = []  # see `moments_of`; what the arrays show
 
     def __repr__(self) -> str:
         return f"<pogosim.VectorBrain of category {self._category!r}: {len(self._runs().states)} runs>"
@@ -71,12 +77,12 @@ class VectorBrain(BrainArrays):
         return self._arrays[name]
 
     def _follow(self, runs: ManyRuns) -> None:
-        """Show what runs measure that have begun anew."""
-        if self._seen != runs.states:
-            for index, state in enumerate(runs.states):
-                if not self._seen or self._seen[index] is not state:
+        """Show what runs measure that have begun anew, or gone on from a state."""
+        if self._seen != (now := moments_of(runs)):
+            for index, moment in enumerate(now):
+                if not self._seen or self._seen[index] != moment:
                     self._take(runs, index)
-            self._seen = list(runs.states)
+            self._seen = now
 
     def _take(self, runs: ManyRuns, run: int) -> None:
         """Take what one run has measured.
@@ -103,7 +109,7 @@ class VectorBrain(BrainArrays):
 
     def _write(self, runs: ManyRuns) -> None:
         """Give the runs what was written."""
-        if self._seen != runs.states:
+        if self._seen != moments_of(runs):
             for index in range(len(runs.states)):
                 self._check_size(runs, index)
         for name, array in self._arrays.items():
@@ -112,7 +118,7 @@ class VectorBrain(BrainArrays):
 
     def _read(self, runs: ManyRuns) -> None:
         """Take what the runs have measured, and which messages wait still."""
-        self._seen = list(runs.states)
+        self._seen = moments_of(runs)
         for name, array in self._arrays.items():
             if name in READ or name == TAKEN_BACK:
                 runs.read(name, array, self._category)
