@@ -8,13 +8,15 @@ import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 from batches import ENVIRONMENT, arguments, batch, results, script
 from batches import write_options as write
+from pogosim.batch import jobqueue
 from pogosim.batch.errors import BatchError
-from pogosim.batch.jobqueue import words_of
+from pogosim.batch.jobqueue import QueuedWorkers, words_of
 from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs, setting
 from running import Run, example
 from searches import COMMAND as SEARCH
@@ -297,6 +299,23 @@ def test_classes_are_those_of_dask_jobqueue() -> None:
 def test_jobs_are_checked_in_python_too() -> None:
     with pytest.raises(BatchError, match="expected one of pbs"):
         QueuedJobs("condor")
+
+
+def test_jobs_that_have_not_joined_are_counted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(jobqueue, "REMIND_S", 0.0)
+    workers = QueuedWorkers(QueuedJobs("pbs"), keep_idle=False)
+    workers.jobs = {str(number): SimpleNamespace(job_id=f"{number}.server") for number in range(4)}
+    workers.started_s = time.monotonic()
+    said = []
+    for joined in ([], ["0"], ["1", "2", "3"]):
+        workers.joined.update(joined)
+        workers.remind()
+        said.append("".join(capsys.readouterr()))
+    assert "pbs: no job has joined the batch yet" in said[0]
+    assert "pbs: 3 of 4 jobs have not joined the batch yet, for 0 min (the first: 1.server)" in said[1]
+    assert said[2] == ""
 
 
 def test_words_of_a_refusal_are_those_of_the_command() -> None:

@@ -54,7 +54,7 @@ class QueuedWorkers:
         self.cores, self.logs = CORES, ""
         self.jobs: dict[str, Any] = {}  # by the name of the worker
         self.joined: set[str] = set()  # names of the workers that have
-        self.submitted = 0
+        self.submitted = self.most_jobs = 0
         self.lost_in_vain = 0  # jobs lost since a run was finished
         self.told_s = self.started_s = 0.0
 
@@ -129,6 +129,7 @@ class QueuedWorkers:
                 raise BatchError(f"{self.flag}: the job is refused: {words_of(error)}") from None
             self.jobs[name] = job
             self.submitted += 1
+            self.most_jobs = max(self.most_jobs, len(self.jobs))
         if number > 0:
             counts = f"{counted(number, 'job')} of {counted(self.cores, 'core')}"
             tell(f"{self.request.system}: submitted {counts}; logs: {self.logs}")
@@ -147,7 +148,7 @@ class QueuedWorkers:
                 yield outcome
 
     def poll(self, left: int) -> None:
-        """Replace jobs that have been lost, and say so if none has joined for long.
+        """Replace jobs that have been lost, and say so if some have not joined for long.
 
         Args:
             left: Runs that are not finished.
@@ -166,19 +167,28 @@ class QueuedWorkers:
             self.keeps_logs = True
             tell(f"{self.request.system}: job {job.job_id} has ended before the batch; its runs are done again")
             self.cancel(job)
-        if self.lost_in_vain >= LOST_PER_JOB * self.request.jobs:
+        if self.lost_in_vain >= LOST_PER_JOB * self.most_jobs:
             raise BatchError(
                 f"{self.flag}: {self.lost_in_vain} jobs have ended since a run was finished; if runs need longer, or "
                 f"more memory, ask for it by --jobqueue-set; logs: {self.logs}"
             )
         if lost:
             self.submit(jobs_for(left, self.request.jobs, self.cores) - len(self.jobs))
+        self.remind()
+
+    def remind(self) -> None:
+        """Say every minute how many jobs have not joined; whether they wait or have ended, only the system knows."""
         now = time.monotonic()
-        if not self.joined and now - self.told_s >= REMIND_S:
+        waiting = [job.job_id for name, job in self.jobs.items() if name not in self.joined]
+        if waiting and now - self.told_s >= REMIND_S:
             self.told_s = now
+            which = (
+                "no job has" if len(waiting) == len(self.jobs) else f"{len(waiting)} of {len(self.jobs)} jobs have not"
+            )
             tell(
-                f"{self.request.system}: no job has joined the batch yet, for {(now - self.started_s) / 60:.0f} min; "
-                f"jobs that start and cannot reach this machine say so in their logs: {self.logs}"
+                f"{self.request.system}: {which} joined the batch yet, for {(now - self.started_s) / 60:.0f} min "
+                f"(the first: {waiting[0]}); jobs that start and cannot reach this machine say so in their logs: "
+                f"{self.logs}"
             )
 
     def cancel(self, job: Any) -> None:
