@@ -18,16 +18,17 @@ from pathlib import Path
 from pogosim.batch.identity import is_executable_program
 from pogosim.batch.run import FRAMES, RunSettings
 from pogosim.batch.run_log import CONFIGURATION, LOG
+from pogosim.batch.running import start_simulator
 
 GREETING = b"pogosim run server 1\n"
-VARIABLE = "POGOSIM_SERVE_RUNS"
 LONGEST_START_S = 10.0  # until the greeting; constructors of the program may take for ever
+LONGEST_END_S = 10.0  # destructors, too
 MOST_RUNS = 1000  # of one process, so that what a run may leave behind does not add up
 SIZE = struct.Struct("=I")
 CODE = struct.Struct("=i")
 NOT_REPEATED = -1  # kNotRepeated of run_server.hpp
 
-Running = Callable[[subprocess.Popen[bytes], Path], AbstractContextManager[None]]
+Watching = Callable[[subprocess.Popen[bytes], Path], AbstractContextManager[None]]
 
 log = logging.getLogger("pogobatch")
 
@@ -68,7 +69,7 @@ class RunServer:
     """
 
     def __init__(
-        self, command: Sequence[str], settings: RunSettings, start: Sequence[str], running: Running = not_watched
+        self, command: Sequence[str], settings: RunSettings, start: Sequence[str], running: Watching = not_watched
     ) -> None:
         temporary = settings.temporary
         self.command = tuple(command)
@@ -85,16 +86,9 @@ class RunServer:
             self.outputs = self.folder / FRAMES
             self.outputs.mkdir()
             with other, self.log.open("wb") as output:
-                self.process = subprocess.Popen(
-                    [*start, *command, "-c", self.configuration],  # which ps shows; a server ignores it
-                    cwd=settings.working_folder,
-                    env=os.environ | settings.environment | {VARIABLE: str(other.fileno())},
-                    pass_fds=[other.fileno()],
-                    stdin=subprocess.DEVNULL,
-                    stdout=output,
-                    stderr=subprocess.STDOUT,
-                    start_new_session=True,  # Ctrl-C reaches the batch alone
-                )
+                # Its command line is what ps shows; a server takes those of its runs.
+                named = [*start, *command, "-c", self.configuration]
+                self.process = start_simulator(named, settings, output, [other.fileno()], serves_at=other.fileno())
             failed.callback(self.process.wait)
             failed.callback(self.process.kill)
             self.stream.settimeout(LONGEST_START_S)
@@ -174,7 +168,7 @@ class RunServer:
         """Let the process end, which does nothing now, and remove the folder."""
         self.stream.close()
         try:
-            self.process.wait(LONGEST_START_S)
+            self.process.wait(LONGEST_END_S)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
@@ -195,7 +189,7 @@ class RunServers:
         command: Sequence[str],
         settings: RunSettings,
         start: Callable[[], Sequence[str]],
-        running: Running = not_watched,
+        running: Watching = not_watched,
     ) -> RunServer | None:
         """Return a server that is free, a new one if there is none; None: the program serves no runs.
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import logging
+import os
 import subprocess
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import IO
 
+from pogosim.batch.run import RunSettings
 from pogosim.lines import printable
 
 # In a line of the log of a run whose robot waits in wall-clock time (src/process/blocked_watch.cpp).
@@ -17,7 +21,43 @@ LOOK_EVERY_S = 2.0
 FIRST_LINE_S = 60.0  # after this time without a run that ends, and twice, four times, ... as long
 LONGEST_LOG = 1_000_000  # bytes at the end of a log that are searched
 
+# Makes a program serve runs, see pogosim.batch.run_server. Only the one that is started for it has it.
+SERVE = "POGOSIM_SERVE_RUNS"
+
 log = logging.getLogger("pogobatch")
+
+
+def start_simulator(
+    command: Sequence[str],
+    settings: RunSettings,
+    output: IO[bytes],
+    kept_open: Sequence[int] = (),
+    serves_at: int | None = None,
+) -> subprocess.Popen[bytes]:
+    """Start a process that does one run, or many.
+
+    Args:
+        command: Its command line.
+        settings: What all runs have in common.
+        output: Where it prints.
+        kept_open: Descriptors of open files that it gets, too.
+        serves_at: That of them by which it is told of many runs; None: it does one.
+
+    Raises:
+        OSError: It cannot be started.
+    """
+    inherited = {name: value for name, value in os.environ.items() if name != SERVE}
+    serving = {} if serves_at is None else {SERVE: str(serves_at)}
+    return subprocess.Popen(
+        command,
+        cwd=settings.working_folder,
+        env=inherited | settings.environment | serving,
+        pass_fds=kept_open,
+        stdin=subprocess.DEVNULL,
+        stdout=output,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,  # Ctrl-C reaches the batch alone
+    )
 
 
 @dataclass(eq=False)

@@ -18,8 +18,8 @@ from typing import IO
 
 from pogosim.batch.run import RunSettings
 from pogosim.batch.run_log import LOG
-from pogosim.batch.run_server import VARIABLE, NotServedError, RunServer, RunServers, ServerLostError
-from pogosim.batch.running import Running, Watch
+from pogosim.batch.run_server import NotServedError, RunServer, RunServers, ServerLostError
+from pogosim.batch.running import Running, Watch, start_simulator
 
 SAVING_S = 10.0  # for the states of runs when the batch ends; batch systems wait 30 s for it
 
@@ -83,16 +83,8 @@ class Simulators:
         if self.is_stopping:
             raise StoppedError
         with log.open("ab" if saving is not None and saving.goes_on else "wb") as output:
-            process = subprocess.Popen(
-                [*watch(), *command],
-                cwd=settings.working_folder,
-                env={**without(VARIABLE), **settings.environment},
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,  # Ctrl-C reaches the batch alone
-                pass_fds=() if saving is None else (saving.lock.fileno(),),
-            )
+            kept_open = () if saving is None else (saving.lock.fileno(),)
+            process = start_simulator([*watch(), *command], settings, output, kept_open)
         try:
             with self.running(process, log, saves_state=saving is not None):
                 code = process.wait()
@@ -176,11 +168,6 @@ class Simulators:
 
 simulators = Simulators()
 atexit.register(simulators.close)
-
-
-def without(variable: str) -> dict[str, str]:
-    """Return the environment of this process without a variable."""
-    return {name: value for name, value in os.environ.items() if name != variable}
 
 
 def kill(process: subprocess.Popen[bytes], number: signal.Signals = signal.SIGKILL) -> None:
