@@ -1,9 +1,5 @@
 // pogolib/magnetometer.h, and magn_check() of the SDK's magnetometer.h
-#include <fmt/format.h>
-
 #include <cstdint>
-#include <numbers>
-#include <optional>
 
 #include "device/magnetometer.hpp"
 #include "process/crash_handler.hpp"
@@ -63,23 +59,11 @@ void look_for_calls_without_time(std::uint16_t timeout_ms) {
     return poll.finds_data;
 }
 
-/// Ends the run.
-[[noreturn]] void refuse_pose(pogosim::Pose const& pose) {
-    constexpr double degrees = 180.0 / std::numbers::pi;
-    char what[256];
-    auto const end = fmt::format_to_n(
-        what, sizeof(what) - 1,
-        "magn_read_XYZ(): the pose x {:.1f} mm, y {:.1f} mm, heading {:.1f} degrees is outside magnetometer.domain, "
-        "whose policy is throw",
-        pose.position_mm.x, pose.position_mm.y, pose.heading_rad * degrees);
-    *end.out = '\0';
-    pogosim::refuse_user_code(what);
-}
-
 [[gnu::noinline]] pogosim::MagneticCounts take_data() {
     auto const counts = pogosim::read_magnetometer(*context.world, context.robot);
     if (!counts) {
-        refuse_pose(pogosim::magnetometer_pose(*context.world, context.robot));
+        auto const text = pogosim::refused_pose_text(pogosim::magnetometer_pose(*context.world, context.robot));
+        pogosim::refuse_user_code(text.data());
     }
     return *counts;
 }

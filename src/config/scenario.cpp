@@ -128,6 +128,19 @@ void require_map(MapReader const& reader, std::string const& key) {
     }
 }
 
+/// The program reads its parameters later, each when it asks for it.
+void refuse_open_parameters(Node const& node, std::string const& path, Problems& problems) {
+    if (is_open_option(node)) {
+        problems.add(fmt::format("{}: {}: {}", node.where(), shown(path), node.scalar));
+    }
+    for (auto const& [key, value] : node.entries) {
+        refuse_open_parameters(value, path + "." + key, problems);
+    }
+    for (Node const& item : node.items) {
+        refuse_open_parameters(item, path, problems);
+    }
+}
+
 }  // namespace
 
 std::vector<Placement> given_poses(ObjectConfig const& object) {
@@ -182,6 +195,9 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Obje
         }
     }
     require_map(reader, "parameters");
+    if (Node const* const parameters = reader.find("parameters"); parameters != nullptr && reading.strict_values) {
+        refuse_open_parameters(*parameters, "parameters", reading.problems);
+    }
     source.values = reader.values();
     scenario.source = std::make_shared<ConfigSource const>(std::move(source));
     scenario.object_files = reading.object_files;

@@ -1,5 +1,7 @@
 #include "device/magnetometer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -200,6 +202,17 @@ std::optional<MagneticCounts> read_magnetometer(World& world, std::uint32_t robo
     ++self.samples;
     self.taken = data_number(world.devices.clock_us[robot]);
     return self.last;
+}
+
+std::array<char, 256> refused_pose_text(Pose const& pose) {
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    std::array<char, 256> text{};
+    fmt::format_to_n(
+        text.data(), text.size() - 1,
+        "magn_read_XYZ(): the pose x {:.1f} mm, y {:.1f} mm, heading {:.1f} degrees is outside magnetometer.domain, "
+        "whose policy is throw",
+        pose.position_mm.x, pose.position_mm.y, pose.heading_rad * degrees);
+    return text;
 }
 
 MagnetometerPoll poll_magnetometer(std::int64_t clock_us, std::int64_t taken, std::uint16_t timeout_ms) {

@@ -56,6 +56,9 @@ std::optional<MagneticCounts> read_magnetometer(World& world, std::uint32_t robo
 /// The pose at which it measures.
 Pose magnetometer_pose(World const& world, std::uint32_t robot);
 
+/// What is said of a pose that the configuration refuses, ended by a zero: code of users that is left must own nothing.
+std::array<char, 256> refused_pose_text(Pose const& pose);
+
 /// Waiting for data that are new 50 times per second of the robot's clock, by looking once a millisecond.
 struct MagnetometerPoll {
     std::int64_t wait_us = 0;  // until the data are found, or the time is over

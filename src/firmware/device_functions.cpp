@@ -140,9 +140,7 @@ CallOutcome has_not_found_magnetometer(FirmwareCall& call) {
 CallOutcome take_field(FirmwareCall& call) {
     auto const counts = read_magnetometer(call.world, call.robot);
     if (!counts) {
-        call.note_slip({"the pose of the robot", "a pose within magnetometer.domain", "1 is returned"}, "outside");
-        call.give(1);
-        return CallOutcome::returns;
+        throw RefusedCall(refused_pose_text(magnetometer_pose(call.world, call.robot)).data());
     }
     for (std::size_t axis = 0; axis < counts->size(); ++axis) {
         std::array<std::byte, 2> bytes{};

@@ -273,6 +273,10 @@ void FirmwareBrain::run_robot(std::uint32_t robot, Part& part) {
         if (restarts && !self.is_starting && !self.has_ended && !is_ahead(call)) {
             go_on(call);  // its first tick
         }
+    } catch (RefusedCall const& refused) {
+        part.failure = failure_of(call, refused.what());
+        part.failure->code = ExitCode::usage;
+        part.failure->refused = true;
     } catch (WrongAddress const& wrong) {
         part.failure = failure_of(call, text_of(wrong));
     } catch (Failed const& failed) {
@@ -390,6 +394,12 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
         self.is_starting = ++self.timer_resets < 2;
         return self.is_starting;
     }
+    if (std::exchange(self.is_drift_due, false)) {  // its last one has not slept
+        drift_clock(world_, call.robot, self.went_on_us);
+        if (is_ahead(call)) {
+            return false;
+        }
+    }
     if (!is_counted() && self.tick_step == world_.step) {
         return false;  // its last one took no time
     }
@@ -401,6 +411,7 @@ bool FirmwareBrain::begin_tick(FirmwareCall& call) const {
     self.tick_step = world_.step;
     self.calls = 0;
     self.went_on_us = call.clock_us();
+    self.is_drift_due = true;
     if (is_observed(call.robot)) {
         services_.observer->note_tick(call.robot, call.ticks(), loop_hz_of(self),
                                       static_cast<double>(call.clock_us()) + self.rest_us);
@@ -463,6 +474,7 @@ bool FirmwareBrain::make_call(FirmwareCall& call, LibraryFunction const& functio
     if (outcome == CallOutcome::sleeps) {
         if (ends_tick || !program_->loop_timer) {
             drift_clock(world_, call.robot, self.went_on_us);
+            self.is_drift_due = false;
         }
         // After the sleep of the main loop, the rest of the tick goes on; in user_init, all does.
         self.is_ending_tick = ends_tick && !self.is_starting;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,11 @@ struct WrongAddress : std::exception {
                  std::string_view its_why = "where there is no memory that it could use")
         : function(its_function), address(its_address), why(its_why) {}
     char const* what() const noexcept override { return "wrong address"; }
+};
+
+/// The configuration refuses what a firmware asks for: that ends the run.
+struct RefusedCall : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 /// What becomes of the robot after a call.

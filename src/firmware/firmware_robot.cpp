@@ -25,6 +25,7 @@ void visit_values(Robot& robot, Visit const& visit) {
     visit(robot.tick_step);
     visit(robot.is_starting);
     visit(robot.is_ending_tick);
+    visit(robot.is_drift_due);
     visit(robot.was_cut_off);
     visit(robot.timer_resets);
     visit(robot.ends_tick);

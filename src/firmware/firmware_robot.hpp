@@ -29,6 +29,7 @@ struct FirmwareRobot {
     std::optional<bool> finds_data{};  // a call waits for data of the magnetometer, and will find some or not
     bool is_starting = false;          // its main loop has not begun; false without one
     bool is_ending_tick = false;       // its main loop has slept, and has not begun the next tick
+    bool is_drift_due = false;         // its tick has begun, and its clock has not drifted since
     bool was_cut_off = false;          // it has run for as long as it might, in the middle of its code
     int timer_resets = 0;              // of timer_main_loop while it is starting
     bool ends_tick = false;            // it has read timer_main_loop, and called nothing since

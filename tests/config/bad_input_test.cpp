@@ -128,6 +128,14 @@ TEST(BadInput, WrongTypesAndRangesAtTheTopLevel) {
          {"parameters: [1]", "parameters: expected a map of keys, found a list"}});
 }
 
+TEST(BadInput, OptionsOfParametersNeedADefaultWhenValuesAreStrict) {
+    std::string const open =
+        kRobots + "parameters: {a: {b: {batch_options: [1]}}, c: {batch_options: [1], default_option: 2}}\n";
+    EXPECT_EQ(load_error(open), "no error");  // the program may not read it
+    EXPECT_EQ(load_error(open, {.strict_values = true}),
+              "x.yaml:6: parameters.a.b: has batch_options but no default_option; run it with pogobatch");
+}
+
 TEST(BadInput, ObjectsAreAMap) {
     EXPECT_EQ(load_error("objects: 5\n"), "x.yaml:1: objects: expected a map of categories, found 5");
     EXPECT_EQ(load_error("objects: [robots]\n"), "x.yaml:1: objects: expected a map of categories, found a list");

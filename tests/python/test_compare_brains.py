@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from firmwares import firmware_in, project_of
 from robot_sdk import TRIPLE, need
-from running import Run, Settings, ran, write_scene
+from running import Run, Settings, compile_program, ran, write_scene
 
 PROGRAM = """#include "pogobase.h"
 typedef struct {{ uint32_t count; int16_t sign; uint32_t size; float mean; void* self; }} USERDATA;
@@ -160,3 +161,49 @@ def test_what_cannot_be_compared_is_one_line(arguments: tuple[str, ...], said: s
     lines = [line for line in result.errors.splitlines() if line.startswith("pogosim compare-brains: ")]
     assert len(lines) == 1
     assert said in lines[0]
+
+
+MAGNETOMETER = """#include "pogobase.h"
+typedef struct {{ int16_t x, y, z; int read; }} USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+void user_init(void) {{ main_loop_hz = 50; }}
+void user_step(void) {{
+    mydata->read += magn_read_XYZ(&mydata->x, &mydata->y, &mydata->z, {timeout_ms}) == 0;
+}}
+int main(void) {{
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}}
+"""
+
+
+@pytest.mark.parametrize("timeout_ms", [10, 20, 21, 50])
+def test_clocks_drift_alike_in_ticks_without_a_sleep(timeout_ms: int, tmp_path: Path) -> None:
+    """Those take as long as a tick may, or longer, so the main loop does not sleep."""
+    settings: Settings = {
+        "magnetometer": {"timing": "robot"},
+        "objects.robots.temporal_noise_stddev": 5,
+        "simulation_time": 2,
+        "enable_console_logging": False,
+    }
+    result = compared_text(tmp_path, MAGNETOMETER.format(timeout_ms=timeout_ms), settings)
+    assert result.code == 0, result.text
+
+
+def test_pose_that_the_magnetometer_refuses_ends_the_run_of_both(tmp_path: Path) -> None:
+    need(f"{TRIPLE}-gcc")
+    source = tmp_path / "main.c"
+    source.write_text(MAGNETOMETER.format(timeout_ms=1))
+    program = compile_program(tmp_path / "main", source)
+    firmware = firmware_in(project_of(tmp_path / "project", source))
+    write_scene(tmp_path, {"magnetometer": {"domain": {"x": [0, 1], "policy": "throw"}}, "simulation_time": 2})
+    for brain in ([], ["--set", f"objects.robots.brain={firmware}"]):
+        result = ran(tmp_path, program, "-c", "scene.yaml", "-g", *brain)
+        assert result.code == 2
+        assert re.search(
+            r"magn_read_XYZ\(\): the pose x [\d.]+ mm, .* is outside magnetometer.domain, whose policy is throw "
+            r"\(called from user_step.* of robot #0 of category 'robots', tick 0, t = 0",
+            result.errors,
+        )

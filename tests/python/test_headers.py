@@ -286,6 +286,14 @@ def test_program_without_main_does_not_link(tmp_path: Path) -> None:
         compile_program(tmp_path / "program", source)
 
 
+@pytest.mark.parametrize("name", ["simulator", "robot", "configuration"])
+def test_headers_of_the_original_simulator_say_what_to_do(name: str, tmp_path: Path) -> None:
+    source = tmp_path / "main.cpp"
+    source.write_text(f'#include "pogosim/{name}.h"\nint main() {{ return 0; }}\n')
+    with pytest.raises(AssertionError, match="Include pogobase"):
+        compile_program(tmp_path / "program", source)
+
+
 def test_library_shows_users_the_interface_and_nothing_else() -> None:
     """Everything else is hidden, so that a program's own names cannot meet ours."""
     library = next((build_folder() / "src").glob("libpogosim.*"))
