@@ -17,13 +17,23 @@ def is_near(rows: pd.DataFrame) -> npt.NDArray[np.bool_]:
 
     Warns (RuntimeWarning) of those that do not.
     """
+    far = is_far(rows)
+    warn_of_far(int(np.count_nonzero(far)), len(rows))
+    return ~far
+
+
+def is_far(rows: pd.DataFrame) -> npt.NDArray[np.bool_]:
+    """Tell which rows have a position that no run can have, without a warning."""
     distance = np.abs(rows[["x", "y"]].to_numpy(dtype=float)).max(axis=1, initial=0.0)
-    is_far = distance > FARTHEST_MM
-    if is_far.any():
+    return np.asarray(distance > FARTHEST_MM)
+
+
+def warn_of_far(count: int, rows: int) -> None:
+    """Warn (RuntimeWarning) if some of so many rows are too far away."""
+    if count:
         warnings.warn(
-            f"{np.count_nonzero(is_far)} of {len(rows)} rows are left out: their positions are more than "
-            f"{FARTHEST_MM / 1e6:g} km away, which no run can have",
+            f"{count} of {rows} rows are left out: their positions are more than {FARTHEST_MM / 1e6:g} km away, which "
+            "no run can have",
             RuntimeWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
-    return np.asarray(~is_far)

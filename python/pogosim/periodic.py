@@ -52,44 +52,65 @@ def steps_of(
     """
     step = minimum_image(offset_mm, size_mm)
     if size_mm is not None and step.size:
-        warn_if_ambiguous(step, np.asarray(duration_s, dtype=float), size_mm, top_speed_mm_s)
+        ambiguity = Ambiguity(size_mm)
+        ambiguity.add(step, np.asarray(duration_s, dtype=float), top_speed_mm_s)
+        ambiguity.warn()
     return step
 
 
-def warn_if_ambiguous(
-    step_mm: Floats, duration_s: Floats, size_mm: Floats, top_speed_mm_s: npt.ArrayLike | None
-) -> None:
-    """Warn if, for one of these steps, shape (..., 2), a robot of this speed could have taken another way."""
-    known = np.isfinite(step_mm).all(axis=-1) & (duration_s > 0.0)
-    if not known.any():
-        return
-    step, duration = np.abs(step_mm[known]), duration_s[known]
-    length = np.hypot(*step.T)
-    told = np.asarray(np.nan if top_speed_mm_s is None else top_speed_mm_s, dtype=float)
-    told = np.broadcast_to(told, duration_s.shape)[known]
-    is_told = np.isfinite(told)
-    speed = np.where(is_told, told, (length / duration).max(where=~is_told, initial=0.0))
-    # The second shortest way leads once more across the border that is nearer.
-    others = [np.hypot(size_mm[axis] - step[:, axis], step[:, 1 - axis]) for axis in (0, 1)]
-    is_ambiguous = np.minimum(*others) <= MARGIN * speed * duration
-    is_ambiguous &= speed > 0.0
-    if not is_ambiguous.any():
-        return
-    fastest = int(np.argmax(np.where(is_ambiguous, speed, 0.0)))
-    top_mm_s = float(speed[fastest])
-    half_mm = float(size_mm.min()) / 2.0
-    fast = (
-        f"robots go up to {length.max():.4g} mm from row to row"
-        if not is_told[fastest]
-        else f"robots drive up to {top_mm_s:.4g} mm/s (max_linear_speed), with {duration.max():.4g} s between rows"
-    )
-    warnings.warn(
-        f"{fast}: enough to cross half of the periodic arena ({half_mm:.4g} mm), so that the shortest way to the next "
-        "row need not be the one that they went. Speeds, displacements and paths may be wrong; record with a "
-        f"save_data_period below {rounded_down(half_mm / top_mm_s):g} s",
-        AmbiguousStepsWarning,
-        stacklevel=2,
-    )
+class Ambiguity:
+    """Whether robots could have taken another way across the borders, for steps that are added one part after another.
+
+    Args:
+        size_mm: Width and height of the periodic arena.
+    """
+
+    def __init__(self, size_mm: Floats) -> None:
+        self.size_mm = size_mm
+        self.length_mm = 0.0  # the longest step
+        self.duration_s = 0.0  # the longest time between rows
+        self.told_mm_s = 0.0  # the greatest speed that the file says, of those of ambiguous steps
+        self.untold_mm_s = 0.0  # the speed of the fastest step of robots whose top speed is unknown
+        self.other_way_mm_s = np.inf  # the least speed with which one of those takes another way
+
+    def add(self, step_mm: Floats, duration_s: Floats, top_speed_mm_s: npt.ArrayLike | None) -> None:
+        """Add steps, shape (..., 2), see `steps_of`."""
+        known = np.isfinite(step_mm).all(axis=-1) & (duration_s > 0.0)
+        if not known.any():
+            return
+        step, duration = np.abs(step_mm[known]), duration_s[known]
+        length = np.hypot(*step.T)
+        told = np.asarray(np.nan if top_speed_mm_s is None else top_speed_mm_s, dtype=float)
+        told = np.broadcast_to(told, duration_s.shape)[known]
+        is_told = np.isfinite(told)
+        # The second shortest way leads once more across the border that is nearer.
+        other = np.minimum(*[np.hypot(self.size_mm[axis] - step[:, axis], step[:, 1 - axis]) for axis in (0, 1)])
+        is_ambiguous = is_told & (other <= MARGIN * told * duration)
+        self.length_mm = max(self.length_mm, float(length.max()))
+        self.duration_s = max(self.duration_s, float(duration.max()))
+        self.told_mm_s = float(told.max(where=is_ambiguous, initial=self.told_mm_s))
+        self.untold_mm_s = float((length / duration).max(where=~is_told, initial=self.untold_mm_s))
+        self.other_way_mm_s = float((other / duration).min(where=~is_told, initial=self.other_way_mm_s))
+
+    def warn(self) -> None:
+        """Warn (AmbiguousStepsWarning) if, for one of the steps, a robot of its speed could have taken another way."""
+        untold_mm_s = self.untold_mm_s if self.other_way_mm_s <= MARGIN * self.untold_mm_s else 0.0
+        top_mm_s = max(self.told_mm_s, untold_mm_s)
+        if not top_mm_s > 0.0:
+            return
+        half_mm = float(self.size_mm.min()) / 2.0
+        fast = (
+            f"robots go up to {self.length_mm:.4g} mm from row to row"
+            if untold_mm_s > self.told_mm_s
+            else f"robots drive up to {top_mm_s:.4g} mm/s (max_linear_speed), with {self.duration_s:.4g} s between rows"
+        )
+        warnings.warn(
+            f"{fast}: enough to cross half of the periodic arena ({half_mm:.4g} mm), so that the shortest way to the "
+            "next row need not be the one that they went. Speeds, displacements and paths may be wrong; record with a "
+            f"save_data_period below {rounded_down(half_mm / top_mm_s):g} s",
+            AmbiguousStepsWarning,
+            stacklevel=3,
+        )
 
 
 def rounded_down(value: float) -> float:

@@ -38,10 +38,13 @@ def is_one_run(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> bool:
 
     The file of a single run says its version, has no combinations, and has each object once at each time.
     """
+    return may_be_one_run(metadata) and not rows.duplicated([name for name in OBJECT_AND_TIME if name in rows]).any()
+
+
+def may_be_one_run(metadata: Mapping[str, Any]) -> bool:
+    """Tell whether metadata are those of the file of a single run, whatever its rows are."""
     is_batch = named_columns(metadata) is not None
-    if is_batch or metadata.get("combinations") or "files" in metadata or "program_version" not in metadata:
-        return False
-    return not rows.duplicated([name for name in OBJECT_AND_TIME if name in rows]).any()
+    return not (is_batch or metadata.get("combinations") or "files" in metadata) and "program_version" in metadata
 
 
 def run_numbers(combination: Mapping[str, Any]) -> list[int]:

@@ -88,24 +88,37 @@ def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, A
         rows = table.to_pandas()
     except DAMAGED as error:
         raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
-    metadata = metadata_of(table.schema)
+    metadata = parsed_metadata(table.schema)
     if warns and not are_of_runs(metadata) and format_in(path) != CSV:  # reading a CSV file tells of it already
-        warnings.warn(
-            f"{path} has no metadata of a run, so configuration and arena are unknown; a dataframe of load_dataframe "
-            "keeps them in its attrs, and to_feather and to_parquet of pandas save these",
-            NoMetadataWarning,
-            stacklevel=3,
-        )
+        warn_of_no_metadata(path)
+    if "arena_polygons" in metadata:
+        metadata["arena_polygons"] = in_millimetres(metadata["arena_polygons"], rows)
+    return rows, metadata
+
+
+def warn_of_no_metadata(path: Path) -> None:
+    """Warn (NoMetadataWarning) that a file says nothing of its run."""
+    warnings.warn(
+        f"{path} has no metadata of a run, so configuration and arena are unknown; a dataframe of load_dataframe "
+        "keeps them in its attrs, and to_feather and to_parquet of pandas save these",
+        NoMetadataWarning,
+        stacklevel=4,
+    )
+
+
+def parsed_metadata(schema: pyarrow.Schema) -> dict[str, Any]:
+    """Return the metadata of a table as `load_dataframe` does, but outlines in the unit of the file."""
+    metadata = metadata_of(schema)
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
     if "resolved_configuration" in metadata:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])
     if "arena_polygons" in metadata:
-        metadata["arena_polygons"] = in_millimetres(parse_polygons(metadata["arena_polygons"]), rows)
+        metadata["arena_polygons"] = parse_polygons(metadata["arena_polygons"])
     if OBJECTS in metadata:
         metadata[OBJECTS] = parse_facts(metadata[OBJECTS])
     if "combinations" in metadata:
         metadata["combinations"] = parse_combinations(metadata["combinations"])
-    return rows, metadata
+    return metadata
 
 
 def read_table(path: Path, warns: bool = True) -> pyarrow.Table:
@@ -182,17 +195,24 @@ def in_millimetres(polygons: Any, rows: pd.DataFrame) -> Any:
     if not has_outlines or not {"x", "y"} <= set(rows.columns):
         return polygons
     try:
-        position = rows[["x", "y"]].to_numpy(dtype=float)
+        return scaled(polygons, positions_within(polygons, rows))
     except (TypeError, ValueError):
         return polygons
+
+
+def positions_within(polygons: list[npt.NDArray[np.float64]], rows: pd.DataFrame) -> npt.NDArray[np.int64]:
+    """Count positions: all, those within the bounding box of outlines, and within one that is 100 times as large."""
+    position = rows[["x", "y"]].to_numpy(dtype=float)
     position = position[np.isfinite(position).all(axis=1)]
     low, high = polygons[0].min(axis=0), polygons[0].max(axis=0)
+    inside = [((position >= scale * low) & (position <= scale * high)).all(axis=1).sum() for scale in (1.0, 100.0)]
+    return np.array([len(position), *inside])
 
-    def share_within(scale: float) -> float:
-        inside = (position >= scale * low) & (position <= scale * high)
-        return float(inside.all(axis=1).mean())
 
-    if len(position) == 0 or not (share_within(100.0) > 0.9 and share_within(1.0) < 0.1):
+def scaled(polygons: list[npt.NDArray[np.float64]], counts: npt.NDArray[np.int64]) -> list[npt.NDArray[np.float64]]:
+    """Return outlines in millimetres, by what `positions_within` counts."""
+    total, within, within_larger = counts
+    if total == 0 or not (within_larger / total > 0.9 and within / total < 0.1):
         return polygons
     return [100.0 * polygon for polygon in polygons]
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.snapshots import Snapshots, snapshots_of
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.analysis.voronoi import Cells, cells_of_places, one_each, places_at_times
 from pogosim.errors import AnalysisError
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import shapely
 
 
-def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.DataFrame:
+def coverage_over_time(run: Run, reach_mm: float | None = None) -> pd.DataFrame:
     """Return statistics of the Voronoi cells and the coverage ratio at each save time.
 
     The coefficient of variation of the areas is 0 for a lattice; for independent, uniform positions (Poisson) its
@@ -46,7 +46,7 @@ def coverage_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.D
     return table
 
 
-def need_arena(run: Trajectories) -> None:
+def need_arena(run: Run) -> None:
     """Raise AnalysisError unless the arena of a run is known, and has a floor."""
     if not run.arena.polygons:
         raise AnalysisError(

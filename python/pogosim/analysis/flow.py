@@ -9,8 +9,8 @@ import numpy as np
 from scipy import sparse
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.snapshots import Integers, blocks_of
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.snapshots import Integers, blocks_of, snapshots_of
+from pogosim.analysis.trajectories import Run, Trajectories
 
 MIN_ROBOTS = 4
 MAX_PAIRS = 1_000_000  # of robots and cells, in a block of times
@@ -64,12 +64,12 @@ class VelocityField:
         return np.asarray(normal**2 + shear**2 - self.vorticity**2)
 
 
-def flow_bounds(run: Trajectories) -> tuple[Floats, Floats]:
+def flow_bounds(run: Run) -> tuple[Floats, Floats]:
     """Return the corners of the grid: those of the arena, or of all positions if the arena is not known."""
     if run.arena.polygons:
         return run.arena.bounds_mm
-    position = run.position_mm[run.is_there]
-    return position.min(axis=0), position.max(axis=0)
+    ends = np.array([(own.position_mm.min(axis=0), own.position_mm.max(axis=0)) for own in snapshots_of(run)])
+    return ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
 
 
 def velocity_fields(

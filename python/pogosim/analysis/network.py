@@ -18,14 +18,15 @@ from scipy import sparse
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.laplacian import Spectra, spectra
 from pogosim.analysis.neighbourhood import components, ranks
-from pogosim.analysis.snapshots import Integers, pairs_of, snapshots_of
-from pogosim.analysis.trajectories import Trajectories, unwrapped
+from pogosim.analysis.snapshots import Integers, pairs_of, snapshots_of, times_of
+from pogosim.analysis.sums import sum_of_parts
+from pogosim.analysis.trajectories import Run, unwrapped_blocks
 
 # Save times are stored with 24 bits, so a window may seem to end a little early.
 ROUNDING = 1e-5
 
 
-def graph_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.DataFrame:
+def graph_over_time(run: Run, reach_mm: float | None = None) -> pd.DataFrame:
     """Return size and connectedness of the proximity graph at each save time.
 
     Returns:
@@ -41,7 +42,7 @@ def graph_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.Data
         rank = ranks(components(len(own.robot), i, j), own.time)
         np.maximum.at(parts[own.times], own.time, rank + 1)
         largest[own.times] = np.bincount(own.time[rank == 0], minlength=own.length)
-    nodes = run.is_there.sum(axis=1)
+    nodes = run.present
     there = np.where(nodes > 0, nodes, np.nan)
     return pd.DataFrame(
         {
@@ -56,7 +57,7 @@ def graph_over_time(run: Trajectories, reach_mm: float | None = None) -> pd.Data
 
 
 def instantaneous_spectra(
-    run: Trajectories, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
+    run: Run, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
 ) -> pd.DataFrame:
     """Return the extreme Laplacian eigenvalues of the unweighted proximity graph at each save time.
 
@@ -82,7 +83,7 @@ def instantaneous_spectra(
 
 
 def averaged_spectra(
-    run: Trajectories, window_s: float, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
+    run: Run, window_s: float, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
 ) -> pd.DataFrame:
     """Return the extreme Laplacian eigenvalues of the adjacency averaged over windows of time.
 
@@ -113,7 +114,7 @@ def averaged_spectra(
 
 
 def averaged_graphs(
-    run: Trajectories, window: Integers, times: Integers, reach_mm: float
+    run: Run, window: Integers, times: Integers, reach_mm: float
 ) -> Iterator[tuple[range, sparse.csr_array, Integers]]:
     """Yield the adjacency matrices averaged over windows, of some windows after the other.
 
@@ -129,6 +130,7 @@ def averaged_graphs(
     """
     robots = len(run.robot_id)
     key, weight = np.zeros((2, 0), dtype=np.int64)  # of the edges of windows that are not over yet
+    there = np.zeros(0, dtype=np.int64)  # the robots that are there in those
     begin = 0
     for own in snapshots_of(run):
         i, j, _ = pairs_of(own, run.arena, reach_mm)
@@ -137,6 +139,7 @@ def averaged_graphs(
         )
         key, inverse = np.unique(np.concatenate([key, found]), return_inverse=True)
         weight = np.bincount(inverse.reshape(-1), np.concatenate([weight, count]), minlength=len(key)).astype(np.int64)
+        there = np.unique(np.concatenate([there, window[own.times][own.time] * robots + own.robot]))
         # Windows are over that have no time in the next block.
         end = len(times) if own.times.stop == len(window) else int(window[own.times.stop])
         if end == begin:
@@ -144,15 +147,14 @@ def averaged_graphs(
         over = int(np.searchsorted(key, end * robots**2))
         at, rest = np.divmod(key[:over], robots**2)
         i, j = np.divmod(rest, robots)
-        span = slice(int(np.searchsorted(window, begin)), int(np.searchsorted(window, end)))
         present = np.zeros((end - begin, robots), dtype=bool)
-        time, robot = np.nonzero(run.is_there[span])
-        present[window[span][time] - begin, robot] = True
+        gone = int(np.searchsorted(there, end * robots))
+        present.ravel()[there[:gone] - begin * robots] = True
         node = np.cumsum(present).reshape(present.shape) - 1
         share = weight[:over] / times[at]
         graph = adjacency_of(int(present.sum()), node[at - begin, i], node[at - begin, j], share)
         yield range(begin, end), graph, np.nonzero(present)[0]
-        key, weight, begin = key[over:], weight[over:], end
+        key, weight, there, begin = key[over:], weight[over:], there[gone:], end
 
 
 def adjacency_of(nodes: int, i: Integers, j: Integers, weight: Floats) -> sparse.csr_array:
@@ -176,14 +178,24 @@ def columns(swarm: Spectra, largest: Spectra) -> dict[str, npt.NDArray[Any]]:
     return found
 
 
-def mean_speed_mm_s(run: Trajectories) -> float:
+def mean_speed_mm_s(run: Run) -> float:
     """Return the mean speed over all robots and pairs of successive save times; NaN without any."""
-    step = np.linalg.norm(np.diff(unwrapped(run), axis=0), axis=2)
-    speed = step / np.diff(run.time_s)[:, None]
-    return float(speed[np.isfinite(speed)].mean()) if np.isfinite(speed).any() else float("nan")
+    count = sum(map(len, speeds_of(run)))
+    return sum_of_parts(speeds_of(run), count) / count if count else float("nan")
 
 
-def contact_time_s(runs: Sequence[Trajectories], reach_mm: float | None = None) -> float:
+def speeds_of(run: Run) -> Iterator[Floats]:
+    """Yield the speeds of robots between successive save times, those of some times after the other."""
+    path, time_s = np.full((1, len(run.robot_id), 2), np.nan), run.time_s[:1] - 1.0
+    for times, _, own in unwrapped_blocks(run, times_of(run.present)):
+        path, time_s = np.concatenate([path, own]), np.concatenate([time_s, run.time_s[times]])
+        step = np.linalg.norm(np.diff(path, axis=0), axis=2)
+        speed = step / np.diff(time_s)[:, None]
+        yield speed[np.isfinite(speed)]
+        path, time_s = path[-1:], time_s[-1:]
+
+
+def contact_time_s(runs: Sequence[Run], reach_mm: float | None = None) -> float:
     """Return tau_c = reach / mean speed, the time in which a robot crosses the radius of its neighbourhood.
 
     Args:
@@ -197,7 +209,7 @@ def contact_time_s(runs: Sequence[Trajectories], reach_mm: float | None = None) 
     return runs[0].reach(reach_mm) / float(np.mean(speeds)) if speeds else float("inf")
 
 
-def ten_periods_s(runs: Sequence[Trajectories]) -> float:
+def ten_periods_s(runs: Sequence[Run]) -> float:
     """Return 10 times the median of the times between successive save times; infinite if there is one only."""
     steps = np.concatenate([np.diff(run.time_s) for run in runs])
     return 10.0 * float(np.median(steps)) if len(steps) else float("inf")

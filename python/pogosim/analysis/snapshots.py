@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.analysis.arena import Arena, Floats
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 
 if TYPE_CHECKING:
     from scipy import spatial
@@ -71,22 +71,24 @@ def blocks_of(cost: Floats) -> Iterator[slice]:
         start = stop
 
 
-def snapshots_of(
-    run: Trajectories, use: npt.NDArray[np.bool_] | None = None, most_times: int = 100_000
-) -> Iterator[Snapshots]:
+def times_of(count: Integers, most_times: int = 100_000) -> Iterator[slice]:
+    """Divide times into blocks, given how many robots are there at each, shape (T,)."""
+    count = count.astype(float)
+    yield from blocks_of(np.maximum(np.maximum(count / MAX_POINTS, count**2 / (2.0 * MAX_PAIRS)), 1.0 / most_times))
+
+
+def snapshots_of(run: Run, use: npt.NDArray[np.bool_] | None = None, most_times: int = 100_000) -> Iterator[Snapshots]:
     """Yield the robots of a run, block by block.
 
     Args:
-        run: Positions of the robots.
+        run: Positions of the robots, in memory or in a file.
         use: Which robots at which times, shape (T, N), all with a position; None: all that have one.
         most_times: In a block.
     """
-    use = run.is_there if use is None else use
-    count = np.count_nonzero(use, axis=1).astype(float)
-    cost = np.maximum(np.maximum(count / MAX_POINTS, count**2 / (2.0 * MAX_PAIRS)), 1.0 / most_times)
-    for times in blocks_of(cost):
-        time, robot = np.nonzero(use[times])
-        yield Snapshots(times, time, robot, run.position_mm[times][time, robot])
+    count = run.present if use is None else np.count_nonzero(use, axis=1)
+    for times, block in run.blocks(times_of(count, most_times)):
+        time, robot = np.nonzero(block.is_there if use is None else use[times])
+        yield Snapshots(times, time, robot, block.position_mm[time, robot])
 
 
 def tree_of_times(

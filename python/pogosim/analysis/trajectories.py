@@ -8,17 +8,19 @@ for run in trajectories_of(rows):
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
 from pogosim.analysis.arena import Arena, Floats
+from pogosim.analysis.progress import rows_read
 from pogosim.analysis.robot_sizes import Sizes, sizes_of
 from pogosim.arguments import Arguments
 from pogosim.batch.paths import get_by_dotted_path
@@ -26,7 +28,7 @@ from pogosim.errors import AnalysisError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories
 from pogosim.object_facts import OBJECTS, entries_of
-from pogosim.periodic import steps_of
+from pogosim.periodic import Ambiguity, minimum_image
 from pogosim.run_columns import is_one_run, named_columns
 from pogosim.utils import polygons_of
 
@@ -37,26 +39,69 @@ given = Arguments(AnalysisError)
 
 OBJECT = ("robot_category", "robot_id")
 
+R = TypeVar("R", bound="Run")
+
 
 @dataclass(frozen=True)
-class Trajectories:
-    """The robots of one run at all its save times. T times, N robots."""
+class Run(ABC):
+    """A run: its robots at all its save times, in memory (`Trajectories`) or in a file (`StoredRun`).
+
+    T times, N robots.
+    """
 
     labels: dict[str, Any]  # what tells the run from others: run, arena_file, columns of combinations
     arena: Arena
     time_s: Floats  # (T,), increasing
     category: npt.NDArray[np.object_]  # (N,)
     robot_id: npt.NDArray[np.int64]  # (N,)
-    position_mm: Floats  # (T, N, 2), NaN where the file has none
-    heading_rad: Floats  # (T, N), NaN where the file has none
-    row: npt.NDArray[np.int64]  # (T, N), position of the row in `rows`, -1 where there is none
-    rows: pd.DataFrame  # all that the file has on this run
     sizes: Sizes  # radius, reach and top speed of each robot
 
-    @cached_property
-    def is_there(self) -> npt.NDArray[np.bool_]:
-        """Which robots have a position at which times, shape (T, N)."""
-        return np.asarray(np.isfinite(self.position_mm).all(axis=2))
+    @property
+    @abstractmethod
+    def present(self) -> npt.NDArray[np.int64]:
+        """How many robots have a position at each time, shape (T,)."""
+
+    @property
+    @abstractmethod
+    def column_names(self) -> list[str]:
+        """Names of the columns of the file."""
+
+    @abstractmethod
+    def read_blocks(self, times: Iterable[slice], columns: Sequence[str]) -> Iterator[tuple[slice, Trajectories]]:
+        """Do what `blocks` does, without telling of it."""
+
+    def blocks(self, times: Iterable[slice], columns: Sequence[str] = ()) -> Iterator[tuple[slice, Trajectories]]:
+        """Yield the robots at some save times after the other, and tell how many rows there were.
+
+        Args:
+            times: Which ones, each later than the one before; `pogosim.analysis.snapshots.times_of` divides all times
+                of a run so that the robots at those of a block fit into memory.
+            columns: Columns of the file that `Trajectories.column` is asked for, apart from time, x, y and angle.
+
+        Yields:
+            The times, and all robots of the run at them.
+
+        Raises:
+            AnalysisError: There is no such column.
+        """
+        self.need_columns(columns)
+        present = self.present
+        for own, block in self.read_blocks(times, columns):
+            yield own, block
+            rows_read(int(present[own].sum()))
+
+    def need_columns(self, names: Sequence[str]) -> None:
+        """Raise AnalysisError unless the file has these columns, once each."""
+        need_columns(pd.DataFrame(columns=self.column_names), names)
+
+    def at(self, time: int) -> Trajectories:
+        """Return the robots at one time, by its number; -1 is the last one."""
+        time = range(len(self.time_s))[time]
+        return next(block for _, block in self.blocks([slice(time, time + 1)]))
+
+    def whole(self) -> Trajectories:
+        """Return the robots at all times, in memory."""
+        return next(block for _, block in self.blocks([slice(0, len(self.time_s))]))
 
     @property
     def radius_mm(self) -> float:
@@ -67,11 +112,6 @@ class Trajectories:
     def reach_mm(self) -> float:
         """Greatest distance between the centres of neighbours, communication_radius + 2 radius; as `radius_mm`."""
         return self.sizes.one("reach_mm")
-
-    @cached_property
-    def path_mm(self) -> Floats:
-        """Positions without jumps at periodic borders, shape (T, N, 2), see `unwrapped`."""
-        return unwrapped_path(self)
 
     def reach(self, reach_mm: float | None) -> float:
         """Return the greatest distance of neighbours: the given one, or that of the run.
@@ -86,6 +126,58 @@ class Trajectories:
             raise given.refused("reach_mm", "a distance in mm", reach_mm)
         return reach
 
+
+@dataclass(frozen=True)
+class Trajectories(Run):
+    """A run in memory."""
+
+    position_mm: Floats  # (T, N, 2), NaN where the file has none
+    heading_rad: Floats  # (T, N), NaN where the file has none
+    row: npt.NDArray[np.int64]  # (T, N), position of the row in `rows`, -1 where there is none
+    rows: pd.DataFrame  # all that the file has on this run
+
+    @property
+    def present(self) -> npt.NDArray[np.int64]:
+        """How many robots have a position at each time, shape (T,)."""
+        return np.asarray(self.is_there.sum(axis=1))
+
+    @property
+    def column_names(self) -> list[str]:
+        """Names of the columns of the file."""
+        return [str(name) for name in self.rows.columns]
+
+    def read_blocks(
+        self,
+        times: Iterable[slice],
+        columns: Sequence[str],  # noqa: ARG002 -- all are in memory
+    ) -> Iterator[tuple[slice, Trajectories]]:
+        """Yield the robots at some save times after the other, see `Run.blocks`."""
+        for own in times:
+            yield (
+                own,
+                replace(
+                    self,
+                    time_s=self.time_s[own],
+                    position_mm=self.position_mm[own],
+                    heading_rad=self.heading_rad[own],
+                    row=self.row[own],
+                ),
+            )
+
+    def whole(self) -> Trajectories:
+        """Return the run itself."""
+        return self
+
+    @cached_property
+    def is_there(self) -> npt.NDArray[np.bool_]:
+        """Which robots have a position at which times, shape (T, N)."""
+        return np.asarray(np.isfinite(self.position_mm).all(axis=2))
+
+    @cached_property
+    def path_mm(self) -> Floats:
+        """Positions without jumps at periodic borders, shape (T, N, 2), see `unwrapped`."""
+        return unwrapped_path(self)
+
     def column(self, name: str) -> npt.NDArray[Any]:
         """Values of a column of the file, shape (T, N). Null, or NaN for numbers, where there is no row.
 
@@ -93,10 +185,9 @@ class Trajectories:
             AnalysisError: There is no such column.
         """
         need_columns(self.rows, [name])
-        values = self.rows[name].to_numpy()
         is_number = pd.api.types.is_numeric_dtype(self.rows[name]) and not pd.api.types.is_bool_dtype(self.rows[name])
-        values = values.astype(float) if is_number else values.astype(object)
-        return np.where(self.row >= 0, values[self.row], np.array(np.nan if is_number else None))
+        values = self.rows[name].to_numpy()[self.row].astype(float if is_number else object)
+        return np.where(self.row >= 0, values, np.array(np.nan if is_number else None))
 
     def snapshots(self) -> Iterator[tuple[float, Floats, npt.NDArray[np.bool_]]]:
         """Yield each time in s, the positions (n, 2) of the robots that are there, and which those are, shape (N,)."""
@@ -151,10 +242,10 @@ def trajectories_of(
     return with_arenas_told_apart(runs)
 
 
-def with_arenas_told_apart(runs: Sequence[Trajectories]) -> list[Trajectories]:
+def with_arenas_told_apart(runs: Sequence[R]) -> list[R]:
     """Return the runs, arenas of one name but different outlines with a number: disk, disk_2, ..."""
     outlines: dict[str, list[bytes]] = {}
-    named = []
+    named: list[R] = []
     for run in runs:
         outline = b"".join(np.round(polygon, 3).tobytes() for polygon in run.arena.polygons)
         known = outlines.setdefault(run.arena.name, [])
@@ -201,16 +292,29 @@ def with_objects(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> pd.DataFram
 
 def of_category(rows: pd.DataFrame, metadata: Mapping[str, Any], category: str | None) -> pd.DataFrame:
     """Take the rows of a category; see `trajectories_of` for None."""
-    names = rows["robot_category"].astype(str)
-    there = sorted(names.unique())
+    chosen = category_names(set(rows["robot_category"].astype(str).unique()), metadata, category)
+    return rows if chosen is None else rows[of_categories(rows, chosen)]
+
+
+def category_names(there: Collection[str], metadata: Mapping[str, Any], category: str | None) -> set[str] | None:
+    """Return the categories to take of those that there are, see `trajectories_of`; None: all.
+
+    Raises:
+        AnalysisError: The one that is wanted is not there.
+    """
     if category is not None:
         if category not in there:
-            raise AnalysisError(f"it has no rows of the category '{category}'; it has {', '.join(there) or 'none'}")
-        return rows[names == category]
+            names = ", ".join(sorted(there)) or "none"
+            raise AnalysisError(f"it has no rows of the category '{category}'; it has {names}")
+        return {category}
     if "robots" in there:
-        return rows[names == "robots"]
-    active = [own.category for own in entries_of(metadata) if own.is_robot and own.category in there]
-    return rows[names.isin(active)] if active else rows
+        return {"robots"}
+    return {own.category for own in entries_of(metadata) if own.is_robot and own.category in there} or None
+
+
+def of_categories(rows: pd.DataFrame, names: Collection[str]) -> npt.NDArray[np.bool_]:
+    """Tell which rows are of these categories."""
+    return np.asarray(rows["robot_category"].astype(str).isin(list(names)))
 
 
 def label_columns(rows: pd.DataFrame, metadata: Mapping[str, Any]) -> list[str]:
@@ -244,12 +348,10 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         AnalysisError: A robot has two rows at one time, or nearly each row has a time of its own.
     """
     times, at_time = np.unique(rows["time"].to_numpy(dtype=float), return_inverse=True)
-    objects = rows.groupby(list(OBJECT), sort=True, dropna=False, observed=True)
-    robot = objects.ngroup().to_numpy()
-    robots = rows[list(OBJECT)].iloc[np.unique(robot, return_index=True)[1]]
-    shape = (len(times), len(robots))
-    if shape[0] * shape[1] > MAX_CELLS_PER_ROW * (len(rows) + 1000):
-        raise AnalysisError(f"its {len(rows)} rows have {shape[0]} times for {shape[1]} robots, hardly any in common")
+    robot = robot_numbers(rows)
+    category, robot_id = robots_in(rows)
+    shape = (len(times), len(robot_id))
+    check_cells(*shape, len(rows))
     row = np.full(shape, -1, dtype=np.int64)
     row[at_time, robot] = np.arange(len(rows))
     if np.count_nonzero(row >= 0) < len(rows):
@@ -264,22 +366,47 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
     heading = np.full(shape, np.nan)
     if "angle" in rows:
         heading[at_time, robot] = rows["angle"].to_numpy(dtype=float)
-
-    def setting(path: str) -> Any:
-        return setting_of(path, labels, metadata)
-
+    arena, sizes = arena_and_sizes(labels, category, metadata)
     return Trajectories(
         labels=labels,
-        arena=arena_of(labels, metadata, setting),
+        arena=arena,
         time_s=times,
-        category=robots["robot_category"].to_numpy(dtype=object),
-        robot_id=robots["robot_id"].to_numpy(),
+        category=category,
+        robot_id=robot_id,
         position_mm=position,
         heading_rad=heading,
         row=row,
         rows=rows,
-        sizes=sizes_of(robots["robot_category"].to_numpy(dtype=object), setting, metadata.get(OBJECTS)),
+        sizes=sizes,
     )
+
+
+def robot_numbers(rows: pd.DataFrame) -> npt.NDArray[np.int64]:
+    """Return the number of the robot of each row, in the order of categories and ids, shape (rows,)."""
+    return np.asarray(rows.groupby(list(OBJECT), sort=True, dropna=False, observed=True).ngroup().to_numpy())
+
+
+def robots_in(rows: pd.DataFrame) -> tuple[npt.NDArray[np.object_], npt.NDArray[np.int64]]:
+    """Return the category and the id of each robot, by its number, shape (N,) each."""
+    robots = rows[list(OBJECT)].iloc[np.unique(robot_numbers(rows), return_index=True)[1]]
+    return robots["robot_category"].to_numpy(dtype=object), robots["robot_id"].to_numpy()
+
+
+def check_cells(times: int, robots: int, rows: int) -> None:
+    """Raise AnalysisError if nearly each row has a time of its own."""
+    if times * robots > MAX_CELLS_PER_ROW * (rows + 1000):
+        raise AnalysisError(f"its {rows} rows have {times} times for {robots} robots, hardly any in common")
+
+
+def arena_and_sizes(
+    labels: dict[str, Any], category: npt.NDArray[np.object_], metadata: Mapping[str, Any]
+) -> tuple[Arena, Sizes]:
+    """Return the arena of a run, and the sizes of its robots, given their categories."""
+
+    def setting(path: str) -> Any:
+        return setting_of(path, labels, metadata)
+
+    return arena_of(labels, metadata, setting), sizes_of(category, setting, metadata.get(OBJECTS))
 
 
 def setting_of(path: str, labels: Mapping[str, Any], metadata: Mapping[str, Any]) -> Any:
@@ -341,13 +468,43 @@ def unwrapped(run: Trajectories) -> Floats:
 
 def unwrapped_path(run: Trajectories) -> Floats:
     """Compute what `unwrapped` returns."""
+    ((_, _, path),) = list(unwrapped_blocks(run, [slice(0, len(run.time_s))]))
+    return path
+
+
+def unwrapped_blocks(run: Run, times: Iterable[slice]) -> Iterator[tuple[slice, Trajectories, Floats]]:
+    """Yield the robots at some save times after the other, all times of the run, and what `unwrapped` has of them.
+
+    Args:
+        run: In memory or in a file.
+        times: Blocks that follow each other.
+    """
     if not run.arena.is_periodic:
-        return run.position_mm
-    last = np.where(run.is_there, np.arange(len(run.time_s))[:, None], 0)
-    np.maximum.accumulate(last, axis=0, out=last)  # the time of the last position up to now
-    filled = np.take_along_axis(run.position_mm, last[:, :, None], axis=0)
-    duration = np.where(run.is_there[1:], run.time_s[1:, None] - run.time_s[last[:-1]], np.nan)
-    steps = steps_of(np.diff(filled, axis=0), duration, run.arena.period_mm, run.sizes.top_speed_mm_s)
-    first = np.take_along_axis(run.position_mm, np.argmax(run.is_there, axis=0)[None, :, None], axis=0)
-    path = first + np.concatenate([np.zeros_like(first), np.cumsum(np.nan_to_num(steps), axis=0)])
-    return np.where(run.is_there[:, :, None], path, np.nan)
+        for own, block in run.blocks(times):
+            yield own, block, block.position_mm
+        return
+    robots = len(run.robot_id)
+    period = run.arena.period_mm
+    ambiguity = None if period is None else Ambiguity(period)
+    # At the end of the last block: where robots were for the last time, when, and how far their steps have led.
+    place, since, total = np.full((1, robots, 2), np.nan), np.full((1, robots), np.nan), np.zeros((1, robots, 2))
+    first = np.full((robots, 2), np.nan)
+    for own, block in run.blocks(times):
+        position = np.concatenate([place, block.position_mm])
+        there = np.concatenate([np.isfinite(place).all(axis=2), block.is_there])
+        time = np.concatenate([since, np.where(block.is_there, block.time_s[:, None], np.nan)])
+        last = np.where(there, np.arange(len(there))[:, None], 0)
+        np.maximum.accumulate(last, axis=0, out=last)  # the time of the last position up to now
+        filled = np.take_along_axis(position, last[:, :, None], axis=0)
+        before = np.take_along_axis(time, last, axis=0)
+        duration = np.where(block.is_there, block.time_s[:, None] - before[:-1], np.nan)
+        steps = minimum_image(np.diff(filled, axis=0), period)
+        if ambiguity is not None:
+            ambiguity.add(steps, duration, run.sizes.top_speed_mm_s)
+        begins = np.take_along_axis(block.position_mm, np.argmax(block.is_there, axis=0)[None, :, None], axis=0)[0]
+        first = np.where(np.isfinite(first), first, begins)
+        path = np.cumsum(np.concatenate([total, np.nan_to_num(steps)]), axis=0)
+        place, since, total = filled[-1:], before[-1:], path[-1:]
+        yield own, block, np.where(block.is_there[:, :, None], first + path[1:], np.nan)
+    if ambiguity is not None:
+        ambiguity.warn()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,9 @@ import shapely
 from matplotlib.figure import Figure
 from shapely import affinity
 
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.arena import Floats
+from pogosim.analysis.snapshots import snapshots_of
+from pogosim.analysis.trajectories import Run
 from pogosim.analysis.walls import distance_to_walls
 from pogosim.command.parser import warn
 from pogosim.errors import AnalysisError
@@ -21,30 +24,45 @@ from pogosim.geometry.validity import Room, problems, room_for
 from pogosim.reports.coverage import with_arenas
 from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import save
-from pogosim.reports.options import labelled, output_folder, read_runs, write_table
+from pogosim.reports.options import labelled, open_runs, output_folder, write_table
 
 
-def outline_of(run: Trajectories) -> Outline:
+def outline_of(run: Run) -> Outline:
     """Return the arena of a run as the arena tools take it."""
     return Outline(tuple(run.arena.polygons), run.arena.name, run.arena.is_periodic)
 
 
-def room_of(run: Trajectories) -> Room | None:
+def room_of(run: Run) -> Room | None:
     """Return the room that an arena has for robots; None if it is periodic or its walls cross."""
     outline = outline_of(run)
     return None if outline.periodic or problems(outline) else room_for(outline, run.radius_mm)
 
 
-def visited_mm2(run: Trajectories) -> float:
-    """Return the area of the floor that bodies of robots covered at some save time, mm2."""
+def places_of(run: Run) -> tuple[dict[float, Floats], float]:
+    """Return where robots were, and how near to a wall.
+
+    Returns:
+        The cells of a tenth of a radius with a robot at some save time, shape (n, 2), by the radius of robots in mm:
+        places that are nearly the same count once. And the least distance to a wall, mm.
+    """
+    cells = {float(radius_mm): np.zeros((0, 2)) for radius_mm in np.unique(run.sizes.radius_mm)}
+    to_wall = np.inf
+    for own in snapshots_of(run):
+        radius = run.sizes.radius_mm[own.robot]
+        for radius_mm, known in cells.items():
+            new = np.unique(np.floor(own.position_mm[radius == radius_mm] / (0.1 * radius_mm)), axis=0)
+            cells[radius_mm] = np.unique(np.concatenate([known, new]), axis=0)
+        to_wall = min(to_wall, float(np.nanmin(distance_to_walls(run.arena, own.position_mm), initial=np.inf)))
+    return cells, to_wall
+
+
+def visited_mm2(run: Run, cells: Mapping[float, Floats]) -> float:
+    """Return the area of the floor that bodies of robots covered at some save time, mm2, given cells of `places_of`."""
     same_area = np.sqrt(np.pi / (16.0 * np.sin(np.pi / 16.0)))  # of a polygon with 32 corners
-    disks = []
-    for radius_mm in np.unique(run.sizes.radius_mm):
-        position = run.position_mm[run.is_there & (run.sizes.radius_mm == radius_mm)]
-        cells = np.unique(np.floor(position / (0.1 * radius_mm)), axis=0)  # places that are nearly the same count once
-        disks.append(
-            shapely.buffer(shapely.points((cells + 0.5) * 0.1 * radius_mm), same_area * radius_mm, quad_segs=8)
-        )
+    disks = [
+        shapely.buffer(shapely.points((own + 0.5) * 0.1 * radius_mm), same_area * radius_mm, quad_segs=8)
+        for radius_mm, own in cells.items()
+    ]
     covered = shapely.union_all(np.concatenate(disks))
     if run.arena.is_periodic:
         width, height = run.arena.size_mm
@@ -53,17 +71,17 @@ def visited_mm2(run: Trajectories) -> float:
     return float(covered.intersection(run.arena.shape()).area)
 
 
-def row_of_run(run_and_room: tuple[Trajectories, Room | None]) -> pd.DataFrame:
+def row_of_run(run_and_room: tuple[Run, Room | None]) -> pd.DataFrame:
     """Return `row_of` a run and the room that its arena has."""
     return row_of(*run_and_room)
 
 
-def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
+def row_of(run: Run, room: Room | None) -> pd.DataFrame:
     """Return what there is to say about the arena of a run, as a table of one row."""
     arena = run.arena
     floor = arena.shape()
     width, height = arena.size_mm
-    to_wall = distance_to_walls(arena, run.position_mm[run.is_there])
+    cells, to_wall = places_of(run)
     return pd.DataFrame(
         {
             "arena": [arena.name],
@@ -76,18 +94,19 @@ def row_of(run: Trajectories, room: Room | None) -> pd.DataFrame:
             "room_share": [np.nan if room is None else room.share],
             "robots": [len(run.robot_id)],
             "robots_area_share": [np.pi * float(np.sum(run.sizes.radius_mm**2)) / floor.area],
-            "visited_share": [visited_mm2(run) / floor.area],
-            "least_wall_distance_mm": [np.nan if arena.is_periodic else float(np.nanmin(to_wall))],
+            "visited_share": [visited_mm2(run, cells) / floor.area],
+            "least_wall_distance_mm": [np.nan if arena.is_periodic else to_wall],
         }
     )
 
 
-def drawn(run: Trajectories, room: Room | None) -> Figure:
+def drawn(run: Run, room: Room | None) -> Figure:
     """Draw the arena of a run with the places of its robots at the end."""
     outline = outline_of(run)
     heading = f"{run.arena.name}: {run.arena.area_mm2:.6g} mm²" + (", periodic" if outline.periodic else "")
     figure = draw(outline, room, heading)
-    last = run.position_mm[-1][run.is_there[-1]]
+    end = run.at(-1)
+    last = end.position_mm[end.is_there]
     figure.axes[0].scatter(
         last[:, 0], last[:, 1], s=12, color="#2a6f97", label=f"robots at {run.time_s[-1]:g} s", zorder=3
     )
@@ -99,7 +118,7 @@ def drawn(run: Trajectories, room: Room | None) -> Figure:
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Write the table and the figures."""
-    runs = with_arenas(read_runs(options, prog), options)
+    runs = with_arenas(open_runs(options, prog), options)
     known = [run for run in runs if run.arena.polygons]
     if not known:
         raise AnalysisError(f"{' '.join(options.input)} has no arena_polygons; give a configuration with -c")

@@ -13,7 +13,7 @@ import pandas as pd
 
 from pogosim.analysis.milling import centre_of_arena
 from pogosim.analysis.motion import speed
-from pogosim.analysis.trajectories import Trajectories, need_columns
+from pogosim.analysis.trajectories import Run
 from pogosim.command.parser import warn
 from pogosim.errors import AnalysisError
 from pogosim.lines import counted
@@ -22,12 +22,12 @@ from pogosim.reports.collective_metrics import METRICS, Metric
 from pogosim.reports.collective_swarm import Settings, Swarm, Vortices
 from pogosim.reports.each_run import for_each_run
 from pogosim.reports.groups import by_combination
-from pogosim.reports.options import labelled, output_folder, read_runs, write_table
+from pogosim.reports.options import labelled, open_runs, output_folder, write_table
 
 MAX_BINS = 100_000
 
 
-def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Settings:
+def settings_of(options: argparse.Namespace, runs: Sequence[Run]) -> Settings:
     """Return the settings that the options name, and those that are the same for all runs.
 
     Raises:
@@ -38,12 +38,14 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Se
             raise AnalysisError(f"--{name}-dr is too small for --{name}-rmax: there would be more than {MAX_BINS} bins")
     for run in runs:
         if options.direction == "heading":
-            need_columns(run.rows, ["angle"])
+            run.need_columns(["angle"])
         if options.milling_center == "arena":
             centre_of_arena(run.arena)
-    squares = [speed(run) ** 2 for run in runs]
-    known = sum(int(np.isfinite(square).sum()) for square in squares)
-    mean_square = float(sum(np.nansum(square) for square in squares)) / known if known else 0.0
+    known, total = 0, 0.0
+    for run in runs:
+        square = speed(run.whole()) ** 2
+        known, total = known + int(np.isfinite(square).sum()), total + float(np.nansum(square))
+    mean_square = total / known if known else 0.0
     return Settings(
         direction=options.direction,
         min_speed_mm_s=options.min_speed,
@@ -64,7 +66,7 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Trajectories]) -> Se
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Read the runs, and write everything."""
-    runs = read_runs(options, prog)
+    runs = open_runs(options, prog)
     settings = settings_of(options, runs)
     folder = output_folder(options)
     first = {name: own[0] for name, own in by_combination(runs, runs).items()}
@@ -85,9 +87,9 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
             pickle.dump(joined, file, protocol=4)
 
 
-def tables_of(run: Trajectories, settings: Settings) -> tuple[dict[str, pd.DataFrame], Vortices]:
+def tables_of(run: Run, settings: Settings) -> tuple[dict[str, pd.DataFrame], Vortices]:
     """Return the tables of all metrics of a run, empty for those that need an arena that is not known, and its flow."""
-    swarm = Swarm(run, settings)
+    swarm = Swarm(run.whole(), settings)
     tables = {
         metric.key: metric.compute(swarm) if run.arena.polygons or not metric.needs_arena else pd.DataFrame()
         for metric in METRICS
@@ -95,7 +97,7 @@ def tables_of(run: Trajectories, settings: Settings) -> tuple[dict[str, pd.DataF
     return tables, swarm.vortices
 
 
-def joined_table(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame]) -> pd.DataFrame:
+def joined_table(runs: Sequence[Run], tables: Sequence[pd.DataFrame]) -> pd.DataFrame:
     """Return the tables of all runs as one, with the labels of the runs."""
     return pd.concat([labelled(table, run) for run, table in zip(runs, tables, strict=True)], ignore_index=True)
 
@@ -105,7 +107,7 @@ def has_values(metric: Metric, table: pd.DataFrame) -> bool:
     return any(name in table and bool(np.isfinite(table[name].astype(float)).any()) for name in metric.curves)
 
 
-def warn_of_missing(prog: str, runs: Sequence[Trajectories], tables: dict[str, list[pd.DataFrame]]) -> None:
+def warn_of_missing(prog: str, runs: Sequence[Run], tables: dict[str, list[pd.DataFrame]]) -> None:
     """Say once which metrics have no values, and why."""
     without = sum(not run.arena.polygons for run in runs)
     if without:
@@ -127,7 +129,7 @@ def warn_of_missing(prog: str, runs: Sequence[Trajectories], tables: dict[str, l
 # ---- Summaries, as text ----
 
 
-def write_summaries(folder: Path, runs: Sequence[Trajectories], tables: Mapping[str, Sequence[pd.DataFrame]]) -> None:
+def write_summaries(folder: Path, runs: Sequence[Run], tables: Mapping[str, Sequence[pd.DataFrame]]) -> None:
     """Write what all runs have in common, and what the runs of each combination have."""
     numbers = [
         {
@@ -145,7 +147,7 @@ def write_summaries(folder: Path, runs: Sequence[Trajectories], tables: Mapping[
     write(folder / "SUMMARY_per_arena.txt", per_arena[:-1])
 
 
-def write_details(folder: Path, runs: Sequence[Trajectories], settings: Settings) -> None:
+def write_details(folder: Path, runs: Sequence[Run], settings: Settings) -> None:
     """Write what the numbers mean."""
     write(folder / "SUMMARY_metric_details.txt", details(runs, settings))
 
@@ -164,7 +166,7 @@ def lines(numbers: Sequence[Mapping[tuple[str, str], float]]) -> list[str]:
     return text
 
 
-def details(runs: Sequence[Trajectories], settings: Settings) -> list[str]:
+def details(runs: Sequence[Run], settings: Settings) -> list[str]:
     """Return what each metric is, and the settings it was computed with."""
     reach = ", ".join(f"{value:g}" for value in sorted({run.reach_mm for run in runs}))
     text = [

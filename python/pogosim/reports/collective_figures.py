@@ -15,7 +15,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from pogosim.analysis.floor import grid_of
 from pogosim.analysis.flow import flow_bounds
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.fonts import literal
 from pogosim.reports.collective_metrics import Metric
 from pogosim.reports.collective_swarm import Vortices
@@ -25,7 +25,7 @@ ARROWS = 24  # along the longer side
 MAX_PANELS = 12
 
 
-def draw_metric(metric: Metric, runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], folder: Path) -> None:
+def draw_metric(metric: Metric, runs: Sequence[Run], tables: Sequence[pd.DataFrame], folder: Path) -> None:
     """Draw the curves of a metric, a panel for each, with bands over the runs of a combination."""
     is_known = [any(name in table and table[name].notna().any() for name in metric.curves) for table in tables]
     if not any(is_known):
@@ -73,7 +73,7 @@ def draw_square_root(axes: Axes, names_curves: bool) -> None:
     axes.legend(handles=None if names_curves else line, frameon=False, fontsize="small")
 
 
-def draw_vorticity_fields(first: Mapping[str, Trajectories], fields: Mapping[str, Vortices], folder: Path) -> None:
+def draw_vorticity_fields(first: Mapping[str, Run], fields: Mapping[str, Vortices], folder: Path) -> None:
     """Draw the mean velocity field of the first run of each combination, up to twelve of them."""
     known = {name: own for name, own in fields.items() if np.isfinite(own.vorticity).any()}
     if not known:
@@ -89,7 +89,7 @@ def draw_vorticity_fields(first: Mapping[str, Trajectories], fields: Mapping[str
     save(figure, folder / "vortex_field")
 
 
-def draw_field(axes: Axes, run: Trajectories, field: Vortices) -> None:
+def draw_field(axes: Axes, run: Run, field: Vortices) -> None:
     """Draw vorticity as colours and velocity as arrows, with y downwards."""
     low, high = flow_bounds(run)
     top = float(np.nanquantile(np.abs(field.vorticity), 0.99)) or 1.0

@@ -14,7 +14,7 @@ import pandas as pd
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.coverage import coverage_over_time
 from pogosim.analysis.robot_sizes import sizes_of
-from pogosim.analysis.trajectories import Trajectories, setting_of, with_arenas_told_apart
+from pogosim.analysis.trajectories import Run, setting_of, with_arenas_told_apart
 from pogosim.confidence import mean_over_runs
 from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
@@ -23,12 +23,12 @@ from pogosim.geometry.configured import arena_of, read_entries
 from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import draw_bands, draw_over_time, new_figure, save, save_over_time
 from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
-from pogosim.reports.options import output_folder, read_runs, write_table
+from pogosim.reports.options import open_runs, output_folder, write_table
 from pogosim.reports.voronoi_diagram import draw_diagrams
 from pogosim.scene import read_periodic
 
 
-def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
+def with_arenas(runs: list[Run], options: argparse.Namespace) -> list[Run]:
     """Return the runs, those without an arena with that of the configuration.
 
     Raises:
@@ -41,7 +41,7 @@ def with_arenas(runs: list[Trajectories], options: argparse.Namespace) -> list[T
     return with_arenas_told_apart([run if run.arena.polygons else with_arena(run, entries, options) for run in runs])
 
 
-def with_arena(run: Trajectories, configuration: Mapping[str, Any], options: argparse.Namespace) -> Trajectories:
+def with_arena(run: Run, configuration: Mapping[str, Any], options: argparse.Namespace) -> Run:
     """Return a run with the arena that a configuration says, and its robots' sizes.
 
     Raises:
@@ -70,7 +70,7 @@ AREA_PANELS = {"mean_area": "mean area of cells (mm²)", "std_area": "standard d
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
-    runs = with_arenas(of_number(read_runs(options, prog), options), options)
+    runs = with_arenas(of_number(open_runs(options, prog), options), options)
     try:
         tables = for_each_run(coverage_over_time, runs, options, "coverage")
     except AnalysisError as error:
@@ -87,7 +87,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
     save_mean_of_arenas(runs, tables, folder, options.input)
 
 
-def of_number(runs: list[Trajectories], options: argparse.Namespace) -> list[Trajectories]:
+def of_number(runs: list[Run], options: argparse.Namespace) -> list[Run]:
     """Return the runs that --run asks for."""
     if options.run is None:
         return runs
@@ -98,7 +98,7 @@ def of_number(runs: list[Trajectories], options: argparse.Namespace) -> list[Tra
     return chosen
 
 
-def named(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
+def named(table: pd.DataFrame, run: Run) -> pd.DataFrame:
     """Return a table with the run, the arena, and further labels of its combination."""
     labels = {name: value for name, value in run.labels.items() if name not in ("run", "arena_file")}
     table = table.assign(arena_name=run.arena.name, **{name: [value] * len(table) for name, value in labels.items()})
@@ -106,7 +106,7 @@ def named(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
     return table
 
 
-def save_variation(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path) -> None:
+def save_variation(runs: Sequence[Run], tables: Sequence[pd.DataFrame], path: Path) -> None:
     """Save a figure of the coefficient of variation over time, with that of independent robots."""
     figure, axes = new_figure()
     draw_over_time(axes[0, 0], by_combination(runs, tables), "cv_area", "coefficient of variation of areas")
@@ -116,7 +116,7 @@ def save_variation(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame],
 
 
 def save_mean_of_arenas(
-    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], folder: Path, inputs: Sequence[str]
+    runs: Sequence[Run], tables: Sequence[pd.DataFrame], folder: Path, inputs: Sequence[str]
 ) -> None:
     """Save the coefficient of variation over time: averaged over the runs in each arena, then over arenas."""
     rest = [name for name in group_names(runs) if name != "arena_file"]

@@ -7,15 +7,20 @@ import multiprocessing
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from typing import Generic, TypeVar
+from typing import Generic, NoReturn, TypeVar
 
 from tqdm import tqdm
+
+from pogosim.analysis.progress import telling
+from pogosim.analysis.trajectories import Run
 
 S = TypeVar("S")
 T = TypeVar("T")
 
 
-def for_each_run(work: Callable[[S], T], runs: Sequence[S], options: argparse.Namespace, what: str) -> list[T]:
+def for_each_run(
+    work: Callable[[S], T], runs: Sequence[S], options: argparse.Namespace, what: str, passes: int = 1
+) -> list[T]:
     """Do some work for each run.
 
     Args:
@@ -24,27 +29,82 @@ def for_each_run(work: Callable[[S], T], runs: Sequence[S], options: argparse.Na
         runs: The runs, each perhaps with what else belongs to it.
         options: Those of the command line; `jobs` is the number of processes, 1 without it.
         what: What is computed, for the progress bar.
+        passes: How many times the work goes through the rows of a run, for the progress bar.
 
     Returns:
         What the function returns, in the order of the runs. Its warnings are given here.
     """
     jobs = min(getattr(options, "jobs", 1), len(runs))
+    with Bar(what, [passes * rows_in(run) for run in runs]) as bar:
+        return list(bar.after_each(results_of(work, runs, jobs)))
+
+
+def results_of(work: Callable[[S], T], runs: Sequence[S], jobs: int) -> Iterator[T]:
+    """Yield what a function returns for each run, done by so many processes; gives its warnings."""
     if jobs < 2:
-        return list(shown(map(work, runs), len(runs), what))
+        yield from map(work, runs)
+        return
     # A process that begins anew, since a copy of this one could wait forever for a lock of another library's thread.
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        found = []
-        for result, messages in shown(pool.map(Watched(work), runs), len(runs), what):
-            found.append(result)
+        for result, messages in pool.map(Watched(work), runs):
             for message in messages:
                 warnings.warn(message, stacklevel=2)
-        return found
+            yield result
 
 
-def shown(results: Iterable[T], count: int, what: str) -> Iterator[T]:
-    """Return the results, and say on a terminal how many of so many are there."""
-    return iter(tqdm(results, desc=what, total=count, unit="run", leave=False, disable=None))
+def rows_in(run: object) -> int:
+    """Return how many rows a run has, perhaps with what else belongs to it; 1 for anything else."""
+    first = run[0] if isinstance(run, tuple) else run
+    return int(first.present.sum()) if isinstance(first, Run) else 1
+
+
+class Bar:
+    """A bar on a terminal that says how many rows are done, also within a run.
+
+    Args:
+        what: What is done.
+        counts: Rows of each run, each as many times as they are read.
+    """
+
+    def __init__(self, what: str, counts: Sequence[int]) -> None:
+        self.counts = counts
+        self.bar: tqdm[NoReturn] = tqdm(
+            desc=what, total=sum(counts), unit="row", unit_scale=True, leave=False, disable=None
+        )
+        self.begin = self.end = 0  # of the run that is being done
+        self.now = 0
+
+    def __enter__(self) -> Bar:
+        self.told = telling(self.read)
+        self.told.__enter__()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.told.__exit__(None, None, None)
+        self.bar.close()
+
+    def read(self, rows: int) -> None:
+        """Go on by rows of the run that is being done, not beyond its end."""
+        self.go_to(min(self.now + rows, self.end))
+
+    def expect(self, rows: int) -> None:
+        """Expect so many rows from now on."""
+        self.end = self.bar.total = rows
+
+    def go_to(self, place: int) -> None:
+        """Go on to a number of rows."""
+        self.bar.update(place - self.now)
+        self.now = place
+
+    def after_each(self, results: Iterable[T]) -> Iterator[T]:
+        """Yield the results of the runs, and go on to the end of each one when its own is there."""
+        source = iter(results)
+        for count in self.counts:
+            self.end += count
+            yield next(source)
+            self.go_to(self.end)
+        yield from source  # none: lets it end
 
 
 class Watched(Generic[S, T]):

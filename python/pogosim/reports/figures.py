@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.confidence import mean_over_runs
 from pogosim.fonts import any_characters, literal
 from pogosim.reports.groups import MOST_CURVES, by_combination, by_panel
@@ -62,24 +62,26 @@ def draw_bands(
         curves: By group: a series per run, indexed by the abscissa. With one run there is no band.
         colours: Colours of the groups; None: their own, with a legend.
     """
-    own_colours = colours_of(list(curves)) if colours is None else colours
-    for name, series in curves.items():
-        together: dict[Hashable, pd.Series[Any]] = dict(enumerate(series))
-        band = mean_over_runs(pd.DataFrame(together))
+    together: dict[str, dict[Hashable, pd.Series[Any]]] = {name: dict(enumerate(own)) for name, own in curves.items()}
+    draw_means(axes, {name: mean_over_runs(pd.DataFrame(own)) for name, own in together.items()}, colours)
+
+
+def draw_means(axes: Axes, bands: Mapping[str, pd.DataFrame], colours: Mapping[str, Any] | None = None) -> None:
+    """Draw what `mean_over_runs` returns, by group, see `draw_bands`."""
+    own_colours = colours_of(list(bands)) if colours is None else colours
+    for name, band in bands.items():
         x = band.index.to_numpy(dtype=float)
         colour = own_colours[name]
         axes.plot(x, band["mean"], color=colour, label=literal(name), marker="o" if len(x) == 1 else "")
         axes.fill_between(x, band["low"], band["high"], color=colour, alpha=0.25, linewidth=0)
     if colours is None:
-        name_curves(axes, len(curves))
+        name_curves(axes, len(bands))
 
 
 Draw = Callable[[Axes, dict[str, list[T]], "Mapping[str, Any] | None"], None]
 
 
-def drawn_by_combination(
-    runs: Sequence[Trajectories], values: Sequence[T], draws: Sequence[Draw[T]], rows: int = 1
-) -> Figure:
+def drawn_by_combination(runs: Sequence[Run], values: Sequence[T], draws: Sequence[Draw[T]], rows: int = 1) -> Figure:
     """Draw what belongs to each run, combination by combination.
 
     Up to six combinations are in one panel for each drawing, with a legend. With more of several parameters, the values
@@ -187,9 +189,7 @@ def draw_violins(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], colum
     axes.set_ylim(bottom=0.0)
 
 
-def save_over_time(
-    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path
-) -> None:
+def save_over_time(runs: Sequence[Run], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path) -> None:
     """Save a figure with a panel for each column; panels: column to label."""
 
     def draw(
@@ -201,9 +201,7 @@ def save_over_time(
     save(drawn_by_combination(runs, tables, draws), path)
 
 
-def save_violins(
-    runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path
-) -> None:
+def save_violins(runs: Sequence[Run], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path) -> None:
     """Save a figure with a panel for each column; panels: column to label."""
     groups = by_combination(runs, tables)
     figure, axes = new_figure(columns=len(panels), width=max(4.5, 1.5 + 0.7 * len(groups)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeVar
 
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 
 T = TypeVar("T")
 
@@ -14,13 +14,13 @@ MOST_CURVES = 6
 MOST_PANELS = 12
 
 
-def group_names(runs: Sequence[Trajectories]) -> list[str]:
+def group_names(runs: Sequence[Run]) -> list[str]:
     """Return the labels whose values differ between runs, apart from the number of the run: those of combinations."""
     names = dict.fromkeys(name for run in runs for name in run.labels)
     return [name for name in names if name != "run" and len({str(run.labels.get(name)) for run in runs}) > 1]
 
 
-def group_of(run: Trajectories, names: Sequence[str]) -> str:
+def group_of(run: Run, names: Sequence[str]) -> str:
     """Return what a curve of this run's combination is called: its values of these labels; the arena if none differ."""
     if not names:
         return run.arena.name
@@ -43,9 +43,7 @@ def is_alone(end: str, names: Sequence[str]) -> bool:
     return sum(end in ends_of(name) for name in names) == 1
 
 
-def by_combination(
-    runs: Sequence[Trajectories], values: Sequence[T], names: Sequence[str] | None = None
-) -> dict[str, list[T]]:
+def by_combination(runs: Sequence[Run], values: Sequence[T], names: Sequence[str] | None = None) -> dict[str, list[T]]:
     """Sort what belongs to each run by combination, so that each has what belongs to repetitions of the same.
 
     Args:
@@ -60,9 +58,9 @@ def by_combination(
     return groups
 
 
-def by_arena(runs: Sequence[Trajectories], values: Sequence[T]) -> dict[str, tuple[list[Trajectories], list[T]]]:
+def by_arena(runs: Sequence[Run], values: Sequence[T]) -> dict[str, tuple[list[Run], list[T]]]:
     """Sort runs, and what belongs to each, by the name of the arena."""
-    arenas: dict[str, tuple[list[Trajectories], list[T]]] = {}
+    arenas: dict[str, tuple[list[Run], list[T]]] = {}
     for run, value in zip(runs, values, strict=True):
         own_runs, own_values = arenas.setdefault(run.arena.name, ([], []))
         own_runs.append(run)
@@ -70,7 +68,7 @@ def by_arena(runs: Sequence[Trajectories], values: Sequence[T]) -> dict[str, tup
     return arenas
 
 
-def panel_label(runs: Sequence[Trajectories]) -> str | None:
+def panel_label(runs: Sequence[Run]) -> str | None:
     """Return the label whose values have a panel each, where one would have too many curves; None: one panel is enough.
 
     It is the one with the fewest values; the others tell the curves of a panel apart.
@@ -83,7 +81,7 @@ def panel_label(runs: Sequence[Trajectories]) -> str | None:
     return name if count[name] <= MOST_PANELS else None
 
 
-def by_panel(runs: Sequence[Trajectories], values: Sequence[T]) -> tuple[dict[str, dict[str, list[T]]], list[str]]:
+def by_panel(runs: Sequence[Run], values: Sequence[T]) -> tuple[dict[str, dict[str, list[T]]], list[str]]:
     """Sort what belongs to each run by panel, and by combination within a panel.
 
     Returns:
@@ -94,7 +92,7 @@ def by_panel(runs: Sequence[Trajectories], values: Sequence[T]) -> tuple[dict[st
     if label is None:
         groups = by_combination(runs, values, names)
         return {"": groups}, list(groups)
-    panels: dict[str, tuple[list[Trajectories], list[T]]] = {}
+    panels: dict[str, tuple[list[Run], list[T]]] = {}
     for run, value in zip(runs, values, strict=True):
         title = f"{endings([label, *names])[0]} {run.labels.get(label)}"
         own_runs, own_values = panels.setdefault(title, ([], []))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 
-from pogosim.analysis.arena import Arena
+from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.density import DensityGrid, count_density, kernel_density
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.snapshots import snapshots_of
+from pogosim.analysis.trajectories import Run
 from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
 from pogosim.scene import floor_outline
@@ -21,13 +23,13 @@ WALL_COLOUR = "0.25"
 MAX_COLUMNS = 3
 
 
-def arenas_of(runs: Sequence[Trajectories]) -> dict[str, list[Trajectories]]:
+def arenas_of(runs: Sequence[Run]) -> dict[str, list[Run]]:
     """Sort runs by arena.
 
     Returns:
         By a name that can be that of a folder, in the order of their first runs.
     """
-    arenas: dict[str, list[Trajectories]] = {}
+    arenas: dict[str, list[Run]] = {}
     for run in runs:
         arenas.setdefault(folder_name(run.arena.name), []).append(run)
     return arenas
@@ -69,11 +71,16 @@ def draw_density(axes: Axes, arena: Arena, grid: DensityGrid, title: str) -> Non
     axes.figure.colorbar(image, ax=axes, label="probability density (1/m²)", shrink=0.8)
 
 
-def draw_heat_maps(runs: Sequence[Trajectories], folder: Path, bins: int) -> None:
+def positions_of(runs: Sequence[Run]) -> Iterator[Floats]:
+    """Yield the positions of robots in all runs, shape (n, 2), those at some times after the other."""
+    for run in runs:
+        for own in snapshots_of(run):
+            yield own.position_mm
+
+
+def draw_heat_maps(runs: Sequence[Run], folder: Path, bins: int) -> None:
     """Draw the heat maps of all arenas together, and of each one alone in its folder."""
-    positions = {
-        name: np.concatenate([run.position_mm.reshape(-1, 2) for run in own]) for name, own in arenas_of(runs).items()
-    }
+    positions = {name: functools.partial(positions_of, own) for name, own in arenas_of(runs).items()}
     arenas = {name: own[0].arena for name, own in arenas_of(runs).items()}
     counts = {name: count_density(arenas[name], points, bins) for name, points in positions.items()}
     kernels = {name: kernel_density(arenas[name], points) for name, points in positions.items()}

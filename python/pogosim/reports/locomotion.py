@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from pogosim.analysis.density import count_outside
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.command.parser import warn
 from pogosim.lines import counted
 from pogosim.reports.each_run import for_each_run
@@ -30,7 +30,7 @@ from pogosim.reports.locomotion_tables import (
     run_row,
     time_table,
 )
-from pogosim.reports.options import output_folder, read_runs, write_table
+from pogosim.reports.options import open_runs, output_folder, write_table
 from pogosim.reports.traces import draw_traces, film_traces
 
 FRAMES = 120
@@ -38,18 +38,24 @@ FRAMES = 120
 UNITS = {"mm_s": "mm/s", "rad_s": "rad/s", "mm2_s": "mm²/s", "mm": "mm", "s": "s"}
 
 
-def tables_of(run: Trajectories, window_s: float, characteristic_length_mm: float | None) -> RunTables:
+def tables_of(stored: Run, window_s: float, characteristic_length_mm: float | None) -> RunTables:
     """Compute all tables of a run, with the sliding window of speeds and the length of the Peclet number."""
+    run = stored.whole()
     agents, msd = agent_table(run), msd_table(run)
     peclet, correlations = peclet_table(run, characteristic_length_mm), autocorrelation_table(run)
     return RunTables(
-        run=run,
+        run=stored,
         agents=agents,
         over_time=time_table(run, window_s),
         peclet=peclet,
         msd=msd,
         correlations=correlations,
         summary=run_row(run, agents, msd, correlations, peclet),
+        msd_per_agent=msd_per_agent_table(run),
+        positions=int(run.present.sum()),
+        outside=count_outside(run.arena, run.position_mm.reshape(-1, 2)),
+        is_evenly_spaced=is_evenly_spaced(run),
+        has_headings=bool(np.isfinite(run.heading_rad).any()),
     )
 
 
@@ -59,15 +65,14 @@ def warn_of_what_is_left_out(tables: Sequence[RunTables], prog: str) -> None:
     robots = sum(len(own.run.robot_id) for own in tables)
     if single := robots - sum(len(own.agents) for own in tables):
         warn(prog, f"{single} of {robots} robots have one position only: no speeds or displacements of them")
-    beyond = [count_outside(own.run.arena, own.run.position_mm.reshape(-1, 2)) for own in tables]
-    if outside := sum(beyond):
-        there = sum(int(own.run.is_there.sum()) for own in tables)
+    if outside := sum(own.outside for own in tables):
+        there = sum(own.positions for own in tables)
         warn(prog, f"{outside} of {there} positions are outside of the arena: they are not in the heat maps")
-    if uneven := sum(not is_evenly_spaced(own.run) for own in tables):
+    if uneven := sum(not own.is_evenly_spaced for own in tables):
         warn(
             prog, f"{uneven} of {runs} runs have unevenly spaced save times: no autocorrelations or averages over them"
         )
-    if blind := sum(not np.isfinite(own.run.heading_rad).any() for own in tables):
+    if blind := sum(not own.has_headings for own in tables):
         warn(prog, f"{blind} of {runs} runs have no headings (column angle): no angular velocities")
     if missing := sum(int(own.peclet["peclet"].isna().sum()) for own in tables):
         warn(prog, f"{missing} of {robots} robots ended near their starting points: no Peclet number for them")
@@ -115,7 +120,7 @@ def write_tables(tables: Sequence[RunTables], folder: Path, inputs: Sequence[str
         "speed_agent_stats": [own.agents for own in tables],
         "speed_time_stats": [own.over_time for own in tables],
         "peclet": [own.peclet for own in tables],
-        "msd_per_agent": [msd_per_agent_table(own.run) for own in tables],
+        "msd_per_agent": [own.msd_per_agent for own in tables],
         "msd_time_stats": [own.msd for own in tables],
         "autocorrelation": [own.correlations for own in tables],
         "runs": [own.summary for own in tables],
@@ -127,7 +132,7 @@ def write_tables(tables: Sequence[RunTables], folder: Path, inputs: Sequence[str
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Do the analysis."""
     folder = output_folder(options)
-    runs = read_runs(options, prog)
+    runs = open_runs(options, prog)
     settings = {"window_s": options.window, "characteristic_length_mm": options.characteristic_length}
     found = for_each_run(functools.partial(tables_of, **settings), runs, options, "locomotion")
     tables = [replace(own, run=run) for own, run in zip(found, runs, strict=True)]  # not the copies of other processes

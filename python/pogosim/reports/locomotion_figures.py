@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.displacement import diffusion_exponent
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.fonts import literal
 from pogosim.reports.figures import draw_bands, new_figure, save
 from pogosim.reports.groups import by_combination
@@ -30,13 +30,18 @@ COLOUR = colormaps["viridis"](0.3)
 class RunTables:
     """What is known of one run."""
 
-    run: Trajectories
+    run: Run
     agents: pd.DataFrame
     over_time: pd.DataFrame
     peclet: pd.DataFrame
     msd: pd.DataFrame
     correlations: pd.DataFrame
     summary: pd.DataFrame
+    msd_per_agent: pd.DataFrame
+    positions: int  # of robots at all times
+    outside: int  # of these, outside of the arena
+    is_evenly_spaced: bool
+    has_headings: bool
 
 
 def groups(tables: Sequence[RunTables], names: Sequence[str]) -> dict[str, list[RunTables]]:

@@ -17,12 +17,12 @@ from pogosim.analysis.network import (
     instantaneous_spectra,
     ten_periods_s,
 )
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.command.parser import warn
 from pogosim.reports.each_run import for_each_run
 from pogosim.reports.figures import save_over_time, save_violins
 from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
-from pogosim.reports.options import labelled, output_folder, read_runs, write_table
+from pogosim.reports.options import labelled, open_runs, output_folder, write_table
 
 GRAPH_PANELS = {
     "n_components": "connected components",
@@ -38,7 +38,7 @@ SPECTRUM_PANELS = {
 
 def analyze(options: argparse.Namespace, prog: str) -> None:
     """Compute everything, then write tables and figures."""
-    runs = read_runs(options, prog)
+    runs = open_runs(options, prog)
     windows = windows_of(runs, options.avg_window_s)
     for name, own in windows.items():
         whole = sum(math.isinf(window_s) for window_s in own)
@@ -47,7 +47,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
                        "window there, the whole run")  # fmt: skip
     work = functools.partial(tables_of, count=options.k_first, zero_tol=options.zero_tol)
     each = [(run, {name: own[number] for name, own in windows.items()}) for number, run in enumerate(runs)]
-    found = for_each_run(work, each, options, "graphs")
+    found = for_each_run(work, each, options, "graphs", passes=2 + len(windows))
     folder = output_folder(options)
     for name in found[0]:
         tables = [own[name] for own in found]
@@ -58,9 +58,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
             save_violins(own_runs, own_tables, panels, folder / f"{name}_violin__arena_{arena}")
 
 
-def tables_of(
-    run_and_windows: tuple[Trajectories, dict[str, float]], count: int, zero_tol: float
-) -> dict[str, pd.DataFrame]:
+def tables_of(run_and_windows: tuple[Run, dict[str, float]], count: int, zero_tol: float) -> dict[str, pd.DataFrame]:
     """Return all tables of a run by name, given the windows of those of averaged graphs."""
     run, windows = run_and_windows
     averaged = {name: averaged_spectra(run, window_s, count, zero_tol=zero_tol) for name, window_s in windows.items()}
@@ -68,7 +66,7 @@ def tables_of(
     return {"network_graph": graph_over_time(run), "instantaneous_eigs": now, **averaged}
 
 
-def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str, list[float]]:
+def windows_of(runs: Sequence[Run], window_s: float | None) -> dict[str, list[float]]:
     """Return the windows of each run by the name of their table."""
     if window_s is not None:
         return {"timeavg_eigs": [window_s] * len(runs)}
@@ -82,6 +80,6 @@ def windows_of(runs: Sequence[Trajectories], window_s: float | None) -> dict[str
     return {name: [own[group_of(run, names)] for run in runs] for name, own in windows.items()}
 
 
-def write_runs(runs: Sequence[Trajectories], tables: Sequence[pd.DataFrame], path: Path, inputs: Sequence[str]) -> None:
+def write_runs(runs: Sequence[Run], tables: Sequence[pd.DataFrame], path: Path, inputs: Sequence[str]) -> None:
     """Write the tables of all runs as one."""
     write_table(pd.concat([labelled(table, run) for run, table in zip(runs, tables, strict=True)]), path, inputs)

@@ -7,18 +7,21 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import pandas as pd
 import pyarrow
 
 from pogosim.analysis.robot_sizes import DifferentRobotsWarning
-from pogosim.analysis.trajectories import Trajectories, trajectories_of
+from pogosim.analysis.stored_runs import ReadAsAWhole, StoredRun, runs_of
+from pogosim.analysis.trajectories import Run, Trajectories, trajectories_of
 from pogosim.command.parser import complain, warn, warnings_told
 from pogosim.errors import AnalysisError, ToolError
 from pogosim.fonts import without_tex
 from pogosim.lines import say
 from pogosim.outputs import OutputError, leads_to, told
 from pogosim.periodic import AmbiguousStepsWarning
+from pogosim.reports.each_run import Bar
 from pogosim.several_files import files_that_fit, is_pattern
 from pogosim.utils import load_dataframe
 
@@ -28,12 +31,65 @@ STRANGE_DATA = (
     pyarrow.ArrowException,
 )
 
+R = TypeVar("R", bound=Run)
+
 OUTPUT_FOLDERS = ("arenas", "stats", "traces")
 OUTPUT_SUFFIXES = (".csv", ".gif", ".json", ".pdf", ".pkl", ".png", ".txt")
 
 
+def open_runs(options: argparse.Namespace, prog: str) -> list[Run]:
+    """Find the runs that the options name. Rows of a complete Feather or Parquet file stay in it, in others in memory.
+
+    Rows of several files, of CSV files, and of those in which the rows of a run are not in the order of time, are read
+    into memory by `read_runs`.
+
+    Raises:
+        AnalysisError: See `read_runs`.
+        OSError: See `read_runs`.
+    """
+    runs = stored_runs(options, prog)
+    return list(read_runs(options, prog)) if runs is None else with_reach(runs, options)
+
+
+def stored_runs(options: argparse.Namespace, prog: str) -> list[StoredRun] | None:
+    """Return the runs of a file whose rows can stay in it; None for others.
+
+    Raises:
+        AnalysisError: There is nothing to analyse.
+    """
+    if len(options.input) > 1 or is_pattern(options.input[0]):
+        return None
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            with Bar("rows", [0]) as bar:
+                runs = runs_of(Path(options.input[0]), options.category, bar.expect)
+        except AnalysisError as error:
+            tell_warnings(caught, prog)
+            raise AnalysisError(f"cannot analyse {options.input[0]}: {error}") from error
+        except (ReadAsAWhole, OSError, *STRANGE_DATA):  # reading all of it says what is wrong
+            return None
+    tell_warnings(caught, prog)
+    return runs
+
+
+def tell_warnings(caught: Sequence[warnings.WarningMessage], prog: str) -> None:
+    """Print warnings as lines of a command."""
+    for warning in caught:
+        warn(prog, warning.message)
+
+
+def with_reach(runs: Sequence[R], options: argparse.Namespace) -> list[R]:
+    """Return the runs with the reach that the options name."""
+    if options.rc is None:
+        return list(runs)
+    return [replace(run, sizes=run.sizes.with_reach(options.rc)) for run in runs]
+
+
 def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
-    """Read the runs that the options name. A file of a killed run is read as far as it goes, with a warning.
+    """Read the runs that the options name into memory.
+
+    A file of a killed run is read as far as it goes, with a warning.
 
     Raises:
         AnalysisError: There is nothing to analyse, or a file is damaged.
@@ -52,11 +108,8 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
         except STRANGE_DATA as error:
             raise AnalysisError(unfit(error)) from error
         finally:
-            for warning in caught:
-                warn(prog, warning.message)
-    if options.rc is not None:
-        runs = [replace(run, sizes=run.sizes.with_reach(options.rc)) for run in runs]
-    return runs
+            tell_warnings(caught, prog)
+    return with_reach(runs, options)
 
 
 def output_folder(options: argparse.Namespace) -> Path:
@@ -101,7 +154,7 @@ def write_table(table: pd.DataFrame, path: Path, inputs: Sequence[str]) -> None:
     table.to_csv(path, index=False)
 
 
-def labelled(table: pd.DataFrame, run: Trajectories) -> pd.DataFrame:
+def labelled(table: pd.DataFrame, run: Run) -> pd.DataFrame:
     """Return a table with the labels of its run as first columns."""
     labels = pd.DataFrame({name: [value] * len(table) for name, value in run.labels.items()}, index=table.index)
     return pd.concat([labels, table], axis=1)

@@ -14,7 +14,7 @@ from PIL import Image
 
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.motion import steps
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run, Trajectories
 from pogosim.fonts import literal
 from pogosim.reports.figures import new_figure, save
 from pogosim.reports.groups import group_of
@@ -25,9 +25,9 @@ FRAMES_PER_S = 12
 COLOURS = colormaps["turbo"]
 
 
-def traced_runs(runs: Sequence[Trajectories], names: Sequence[str]) -> dict[str, Trajectories]:
+def traced_runs(runs: Sequence[Run], names: Sequence[str]) -> dict[str, Run]:
     """Return the first run of each combination, by what its files are called: arena, combination and run."""
-    first: dict[str, Trajectories] = {}
+    first: dict[str, Run] = {}
     for arena, own in arenas_of(runs).items():
         seen = set()
         for run in own:
@@ -119,18 +119,18 @@ def last_full_time(run: Trajectories) -> int:
     return int(np.flatnonzero(run.is_there.any(axis=1))[-1])
 
 
-def draw_traces(runs: Sequence[Trajectories], names: Sequence[str], folder: Path, length: int) -> None:
+def draw_traces(runs: Sequence[Run], names: Sequence[str], folder: Path, length: int) -> None:
     """Draw the last steps of the first run of each combination."""
     for name, run in traced_runs(runs, names).items():
-        traces = TraceFigure(run, length)
-        traces.show(last_full_time(run))
+        traces = TraceFigure(run.whole(), length)
+        traces.show(last_full_time(traces.run))
         save(traces.figure, folder / "traces" / name)
 
 
-def film_traces(runs: Sequence[Trajectories], names: Sequence[str], folder: Path, length: int, frames: int) -> None:
+def film_traces(runs: Sequence[Run], names: Sequence[str], folder: Path, length: int, frames: int) -> None:
     """Make an animated GIF of the traces of the first run of each combination, of at most so many frames."""
     for name, run in traced_runs(runs, names).items():
-        traces = TraceFigure(run, length)
+        traces = TraceFigure(run.whole(), length)
         shown = np.unique(np.linspace(0, len(run.time_s) - 1, frames).round().astype(int))
         images = []
         for index in shown:

@@ -11,17 +11,18 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from pogosim.analysis.arena import Floats
-from pogosim.analysis.trajectories import Trajectories
+from pogosim.analysis.trajectories import Run
 from pogosim.analysis.voronoi import Cells, voronoi_areas, voronoi_cells
 
 
-def draw_diagrams(run: Trajectories) -> Figure:
+def draw_diagrams(run: Run) -> Figure:
     """Draw the cells at the first and the last time of a run, with one scale of colours."""
     times = sorted({0, len(run.time_s) - 1})
     width, height = run.arena.size_mm
     figure = Figure(figsize=(1.2 + 5.0 * len(times), min(max(5.0 * height / width, 2.0), 12.0)), layout="constrained")
     axes = figure.subplots(1, len(times), squeeze=False)[0]
-    positions = [run.position_mm[time][run.is_there[time]] for time in times]
+    ends = [run.at(time) for time in times]
+    positions = [own.position_mm[own.is_there] for own in ends]
     cells = [voronoi_cells(position, run.arena) for position in positions]
     areas = [voronoi_areas(own, position, run.arena) / 1e3 for own, position in zip(cells, positions, strict=True)]
     every = np.concatenate([*areas, [0.0]])
@@ -34,7 +35,7 @@ def draw_diagrams(run: Trajectories) -> Figure:
 
 
 def draw_diagram(
-    axes: Axes, run: Trajectories, position_mm: Floats, cells: Cells, area: Floats, colours: Normalize
+    axes: Axes, run: Run, position_mm: Floats, cells: Cells, area: Floats, colours: Normalize
 ) -> PolyCollection:
     """Draw cells, robots at their size, and walls; y downwards."""
     arena = run.arena
