@@ -1,4 +1,4 @@
-"""How many rows have been read: told to whoever wants to show it."""
+"""How many rows have been read: a function that shows it is called with it."""
 
 from __future__ import annotations
 

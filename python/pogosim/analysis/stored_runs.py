@@ -95,7 +95,7 @@ class Rows:
                     sizes = [reader.get_batch(number).num_rows for number in range(reader.num_record_batches)]
         except (*DAMAGED, KeyError, IndexError) as error:
             raise ReadAsAWhole from error
-        # Of each piece: the batch, its first row there, and its number of rows.
+        # A piece: its batch, its first row there, and its number of rows.
         self.pieces = [
             (batch, begin, min(PIECE, size - begin))
             for batch, size in enumerate(sizes)
