@@ -23,6 +23,7 @@ SUBCOMMANDS = (
     "analyze",
     "picture",
     "film",
+    "report",
     "recover",
     "flash",
     "arena",

@@ -57,6 +57,7 @@ PAGES_WITH_COMMANDS = [
             "message_log",
             "optimization",
             "pictures",
+            "reports",
             "supervisor",
             "window",
         )

@@ -46,10 +46,21 @@ def without_folder(line: str, folder: Path) -> str:
 
 def warnings_in(folder: Path) -> str:
     """Return the warnings in the log of a run, each once, without dates."""
+    with contextlib.suppress(OSError):
+        return "\n".join(warnings_in_log(folder / LOG))
+    return ""
+
+
+def warnings_in_log(path: Path) -> list[str]:
+    """Return the warnings in a file of what a run has printed, each once, without dates.
+
+    Raises:
+        OSError: It cannot be read.
+    """
     found: dict[str, None] = {}
-    with contextlib.suppress(OSError), (folder / LOG).open("rb") as file:
+    with path.open("rb") as file:
         while len(found) < MAX_WARNINGS and (line := file.readline(LONGEST_LINE)):
             _, mark, text = line.decode(errors="replace").rstrip("\r\n").partition("[warning] ")
             if mark:
-                found[without_folder(text, folder)] = None
-    return "\n".join(found)
+                found[without_folder(text, path.parent)] = None
+    return list(found)

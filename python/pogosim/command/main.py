@@ -43,6 +43,7 @@ COMMANDS = Table(
         "analyze": Own("pogosim.reports.command:main", "compute what robots did: tables and figures of a data file"),
         "picture": Own("pogosim.picture.command:main", "draw the trajectories of a run"),
         "film": Own("pogosim.film.command:main", "make a film of a run, or a page to replay it in a browser"),
+        "report": Own("pogosim.run_report.command:main", "write a page on a run or a batch: replay, figures, numbers"),
         "recover": Own("pogosim.command.recover:main", "make a complete data file of a run that was killed"),
         "flash": Own("pogosim.command.flash:main", "look into archives of robots' flash memory, and make them"),
         "arena": Own("pogosim.geometry.command:main", "draw, check, scale and convert arenas"),

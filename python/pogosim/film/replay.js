@@ -914,6 +914,7 @@ function listenToMouse() {
     let drag = null;
     const place = (event) => [event.offsetX, event.offsetY];
     canvas.addEventListener("wheel", (event) => {
+        if (window !== window.parent && !document.hasFocus()) return;  // in another page, which is scrolled
         event.preventDefault();
         zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.0015)), ...place(event));
     }, {passive: false});

@@ -6,7 +6,6 @@ import argparse
 import html
 import json
 import math
-import re
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, qua
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.lines import counted
 from pogosim.outputs import partial_output
+from pogosim.pages import filled
 from pogosim.picture import layers
 from pogosim.picture.body_links import ARENA, LEAST_TENSION_N, N_PER_MM, PlacedLinks, placed_links
 from pogosim.picture.colouring import scale_of
@@ -56,6 +56,21 @@ def write_replay(
         PictureError: The run is too large.
         OSError: The page cannot be written.
     """
+    text, head, warnings = replay_page(recording, span_s, options, Path(options.data).name)
+    page = text.encode("utf-8")
+    with partial_output(path) as partial:
+        partial.write_bytes(page)
+    count, times = len(head["objects"]), head["times"]
+    return f"{counted(count, 'object')} from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
+
+
+def replay_page(
+    recording: Recording, span_s: tuple[float, float], options: argparse.Namespace, name: str
+) -> tuple[str, dict[str, Any], list[str]]:
+    """Return the page of a run, what it knows of the run, and warnings; `name`: that of the file, for its title.
+
+    Args and errors as of write_replay().
+    """
     head, data, picture, warnings = replay_data(recording, span_s)
     head["start"] = {
         "speed": options.speed,
@@ -64,12 +79,7 @@ def write_replay(
         "links": options.links,
         "colourBy": options.color_by if options.color_by != "led_rgb" else None,
     }
-    name = Path(options.data).name
-    page = page_of(head, data, picture, name).encode("utf-8")
-    with partial_output(path) as partial:
-        partial.write_bytes(page)
-    count, times = len(head["objects"]), head["times"]
-    return f"{counted(count, 'object')} from {times[0]:.9g} s to {times[-1]:.9g} s, {len(page) / 1e6:.2f} MB", warnings
+    return page_of(head, data, picture, name), head, warnings
 
 
 def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:
@@ -85,9 +95,7 @@ def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:
         "@@HEAD@@": text,
         "@@DATA@@": data,
     }
-    page = (FOLDER / "replay.html").read_text(encoding="utf-8")
-    # In one go: names in the data may look like marks.
-    return re.sub("|".join(parts), lambda mark: parts[mark.group()], page).encode("utf-8", "replace").decode("utf-8")
+    return filled((FOLDER / "replay.html").read_text(encoding="utf-8"), parts)
 
 
 def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, str, list[str]]:

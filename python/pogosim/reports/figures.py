@@ -81,7 +81,13 @@ def draw_means(axes: Axes, bands: Mapping[str, pd.DataFrame], colours: Mapping[s
 Draw = Callable[[Axes, dict[str, list[T]], "Mapping[str, Any] | None"], None]
 
 
-def drawn_by_combination(runs: Sequence[Run], values: Sequence[T], draws: Sequence[Draw[T]], rows: int = 1) -> Figure:
+def drawn_by_combination(
+    runs: Sequence[Run],
+    values: Sequence[T],
+    draws: Sequence[Draw[T]],
+    rows: int = 1,
+    palette: Callable[[Sequence[str]], dict[str, Any]] = colours_of,
+) -> Figure:
     """Draw what belongs to each run, combination by combination.
 
     Up to six combinations are in one panel for each drawing, with a legend. With more of several parameters, the values
@@ -94,16 +100,17 @@ def drawn_by_combination(runs: Sequence[Run], values: Sequence[T], draws: Sequen
         draws: What to draw: functions of the axes, the values by the names of the curves, and the colours of these;
             without colours, there is a legend to make.
         rows: Rows of panels, if there is one for each drawing.
+        palette: Gives the colours of many curves, by their names.
     """
     panels, names = by_panel(runs, values)
     if len(panels) == 1:
         figure, axes = new_figure(-(-len(draws) // rows), rows)
-        colours = colours_of(names) if len(names) > MOST_CURVES else None
+        colours = palette(names) if len(names) > MOST_CURVES else None
         for own, draw in zip(axes.flat, draws, strict=False):
             draw(own, next(iter(panels.values())), colours)
     else:
         figure, axes = new_figure(len(draws), len(panels), height=3.0)
-        colours = colours_of(names)
+        colours = palette(names)
         for line, (title, groups) in zip(axes, panels.items(), strict=True):
             for own, draw in zip(line, draws, strict=True):
                 draw(own, groups, colours)
