@@ -24,6 +24,7 @@ SUBCOMMANDS = (
     "picture",
     "film",
     "report",
+    "compare",
     "recover",
     "flash",
     "arena",

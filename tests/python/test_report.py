@@ -107,7 +107,7 @@ def test_values_that_are_not_finite_are_no_values(tmp_path: Path) -> None:
 
 
 def test_empty_truth_values_are_no_values(tmp_path: Path) -> None:
-    rows = walkers().assign(fed=[None, True, False] * 5)
+    rows = walkers().assign(fed=pd.Series([None, True, False] * 5, dtype=object))
     assert quantities(rows, tmp_path)["column fed"].over_time == pytest.approx(0.5)
 
 

@@ -44,6 +44,7 @@ COMMANDS = Table(
         "picture": Own("pogosim.picture.command:main", "draw the trajectories of a run"),
         "film": Own("pogosim.film.command:main", "make a film of a run, or a page to replay it in a browser"),
         "report": Own("pogosim.run_report.command:main", "write a page on a run or a batch: replay, figures, numbers"),
+        "compare": Own("pogosim.comparison.command:main", "tell where two runs or two batches differ"),
         "recover": Own("pogosim.command.recover:main", "make a complete data file of a run that was killed"),
         "flash": Own("pogosim.command.flash:main", "look into archives of robots' flash memory, and make them"),
         "arena": Own("pogosim.geometry.command:main", "draw, check, scale and convert arenas"),
