@@ -67,6 +67,13 @@ def test_pictures_and_films_draw_names_as_they_are(name: str, formulas: list[str
     assert formulas == []
 
 
+def test_reports_and_comparisons_draw_names_as_they_are(formulas: list[str], tmp_path: Path) -> None:
+    data = str(results(tmp_path, NAMES))
+    assert main(["report", data, "-o", str(tmp_path / "r.html"), "--no-replay", "-q"]) == 0
+    assert main(["compare", data, data, "-o", str(tmp_path / "c.png"), "-q"]) == 0
+    assert [text for text in formulas if any(name in text for name in NAMES)] == []
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_legends_and_axes_have_every_name(name: str, formulas: list[str], tmp_path: Path) -> None:
     figure = Figure()

@@ -16,6 +16,8 @@ COMMANDS = [
     ("film", "data.feather", "-o", "out.gif", "--size", "200", "-q"),
     ("arena", "show", str(ROOT / "arenas" / "disk.csv"), "arena.png"),
     ("analyze", "arena", "-i", "data.feather", "-o", "out"),
+    ("report", "data.feather", "-o", "out.html", "-q"),
+    ("compare", "data.feather", "data.feather", "-o", "compared.png", "-q"),
 ]
 
 

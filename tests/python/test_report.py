@@ -271,6 +271,7 @@ def test_page_of_a_long_run_is_small(tmp_path: Path) -> None:
     page = reported(write(tmp_path / "run.feather", rows))
     assert (tmp_path / "report.html").stat().st_size < 6e6
     assert "of 6000 records, and the last one" in page.text
+    assert "with the ways they went in the last 2.5e+03 s" in page.text
 
 
 def test_many_columns_are_left_out_and_counted(tmp_path: Path) -> None:

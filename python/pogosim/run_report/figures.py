@@ -19,6 +19,7 @@ from pogosim.picture.palette import INK
 from pogosim.reports.figures import draw_bands, drawn_by_combination, name_curves
 from pogosim.reports.groups import by_combination
 
+WIDTH = 4.6  # inches
 MOST_POINTS = 400  # of a curve
 # Paul Tol's bright colours, which are seen on white and on black, and are told apart by the colour-blind.
 COLOURS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
@@ -68,7 +69,9 @@ def figure_of(runs: Sequence[Trajectories], quantities: Sequence[Quantity]) -> S
     with mpl.rc_context({**INKED, "svg.hashsalt": "pogosim", "svg.fonttype": "path", "font.size": 10.0}):
         figure = drawn_by_combination(runs, curves, [draw], palette=palette)
         if len(figure.axes) == 1:
-            figure.set_size_inches(4.6, 3.0 + figure.get_figheight() - 4.0)  # of a legend below, which made it higher
+            figure.set_size_inches(WIDTH, 3.0 + figure.get_figheight() - 4.0)  # a legend below has made it higher
+        else:
+            figure.set_size_inches(WIDTH, figure.get_figheight() * WIDTH / figure.get_figwidth())
         content = io.BytesIO()
         with any_characters():
             figure.savefig(content, format="svg", transparent=True, metadata={"Date": None, "Creator": None})

@@ -42,6 +42,7 @@ LONGEST_S = 30.0  # that a replay takes at the speed it begins with
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0)
 TAIL_S = 5.0
 STATE_DPI = 80.0
+MOST_TRAIL_STEPS = 100_000  # robots times records
 
 BANDS_OF_ONE = "Curves are means over the robots, bands the middle half of them; the order is one number of all robots."
 BANDS_OF_RUNS = (
@@ -92,6 +93,8 @@ def make_report(path: Path, options: argparse.Namespace, prog: str) -> None:
             computed = compute(options.data, options.category)
             configurations = configurations_of(options.data, computed.metadata)
         report = described(options, computed, configurations.repeating(computed.metadata))
+        metadata, run_count = computed.metadata, len(computed.runs)
+        del computed  # its rows
         if configurations.resolved and configurations.resolved != report.configuration:
             report.others.append(("Every key with its value in the run, defaults included", configurations.resolved))
         elif configurations.given != report.configuration:
@@ -104,13 +107,13 @@ def make_report(path: Path, options: argparse.Namespace, prog: str) -> None:
         show_run(report, recording, options)
     for text in said:
         warn(prog, text)
-    report.warnings = warnings_of(computed.metadata, log_path(options), said)
+    report.warnings = warnings_of(metadata, log_path(options), said)
     page = page_of(report).encode("utf-8")
     with partial_output(path) as partial:
         partial.write_bytes(page)
     if not options.quiet:
-        runs = counted(len(computed.runs), "run")
-        say(f"{options.output}: {runs}, {counted(len(report.figures), 'figure')}, {len(page) / 1e6:.2f} MB")
+        figures = counted(len(report.figures), "figure")
+        say(f"{options.output}: {counted(run_count, 'run')}, {figures}, {len(page) / 1e6:.2f} MB")
 
 
 @contextlib.contextmanager
@@ -235,10 +238,14 @@ def spread(values: Sequence[float]) -> str:
 def show_run(report: Report, recording: Recording, options: argparse.Namespace) -> None:
     """Add the picture of the end of a run, and its replay."""
     last = recording.until()
+    times_s = recording.times_s
+    share = MOST_TRAIL_STEPS / len(last.rows)
+    tail_s = None if share >= 1.0 else max(share * float(times_s[-1] - times_s[0]), 1e-9)
     with any_characters():
-        report.state = rendered(draw(last), "png", STATE_DPI)
+        report.state = rendered(draw(last, tail_s), "png", STATE_DPI)
     told = " ".join(title(last, 1000.0).replace("\u00a0", " ").split())
-    report.state_told = f"{told}, with the ways they went"
+    way = "the ways they went" if tail_s is None else f"the ways they went in the last {tail_s:.2g} s"
+    report.state_told = f"{told}, with {way}"
     left_out = f"The data file holds {recording.left_out}. " if recording.left_out else ""
     if options.no_replay:
         report.replay_note = left_out
