@@ -268,6 +268,20 @@ def test_versions_and_arenas_are_told(tmp_path: Path) -> None:
     assert [own["key"] for own in entries["configurations"]] == ["outline of the arena"]
 
 
+def test_programs_are_compared_where_a_batch_has_kept_their_hash(tmp_path: Path) -> None:
+    for name, own in (("a", "12"), ("b", "34")):
+        (tmp_path / name / "frames").mkdir(parents=True)
+        write(tmp_path / name / "frames" / "data.feather", walkers())
+        (tmp_path / name / "pogobatch_task.json").write_text(json.dumps({"program_hash": own}))
+    result = compared(tmp_path, "a/frames/data.feather", "b/frames/data.feather")
+    assert "programs: they differ" in result.output
+    assert result.code == 0
+    for text in ("[]", "{", '{"program_hash": 3}'):
+        (tmp_path / "b" / "pogobatch_task.json").write_text(text)
+        result = compared(tmp_path, "a/frames/data.feather", "b/frames/data.feather")
+        assert "programs: not compared" in result.output
+
+
 # ---- batches ---------------------------------------------------------------------------------------------------------
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pogosim.batch.manifests import TASK
 from pogosim.row_batches import row_batches
 from pogosim.run_report.facts import is_batch, seeds_of
 from pogosim.several_files import configuration_of, is_pattern
@@ -27,6 +29,7 @@ class Source:
     metadata: Mapping[str, Any]
     seeds: list[Any]  # empty: unknown
     runs: int
+    program: str = ""  # hash of the program, where a batch has kept it beside the file; empty: unknown
 
     @property
     def is_one_file(self) -> bool:
@@ -70,7 +73,20 @@ def source_of(name: str) -> Source:
     if is_batch(found):
         counts = [entry.get("runs") for entry in found["combinations"] if isinstance(entry, dict)]
         runs = sum(count for count in counts if isinstance(count, int))
-    return Source(name, found, seeds_of(found, []), runs)
+    return Source(name, found, seeds_of(found, []), runs, program_hash(Path(name)))
+
+
+def program_hash(data: Path) -> str:
+    """Return the hash of the program of a run, of the manifest that a batch has kept in its folder; empty: unknown.
+
+    The data file is in the folder below, see `pogosim.batch.manifests`.
+    """
+    try:
+        entries = json.loads((data.resolve().parent.parent / TASK).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return ""
+    found = entries.get("program_hash") if isinstance(entries, dict) else None
+    return found if isinstance(found, str) else ""
 
 
 def differences(a: Source, b: Source) -> list[KeyDifference]:

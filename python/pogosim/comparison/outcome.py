@@ -123,7 +123,12 @@ def lines(outcome: Outcome, most: int) -> list[str]:
     for letter, source in zip("ab", outcome.sources, strict=True):
         seeds = f", seed{'s' if len(source.seeds) > 1 else ''} {shortened(source.seeds)}" if source.seeds else ""
         version = f", {source.version}" if source.version else ""
-        said.append(f"{letter}: {source.name}: {counted(source.runs, 'run')}{seeds}{version}")
+        program = f", program {source.program}" if source.program else ""
+        said.append(f"{letter}: {source.name}: {counted(source.runs, 'run')}{seeds}{version}{program}")
+    if not all(source.program for source in outcome.sources):
+        said.append("programs: not compared, since data files do not say which program ran")
+    elif outcome.sources[0].program != outcome.sources[1].program:
+        said.append("programs: they differ")
     said += key_lines(outcome, most)
     if outcome.rows is not None:
         said += row_lines(outcome.rows, most)
@@ -225,7 +230,13 @@ def as_json(outcome: Outcome) -> str:
         "differ": outcome.differ,
         "verdict": outcome.verdict,
         "files": [
-            {"name": own.name, "version": own.version or None, "seeds": own.seeds, "runs": own.runs}
+            {
+                "name": own.name,
+                "version": own.version or None,
+                "program_hash": own.program or None,
+                "seeds": own.seeds,
+                "runs": own.runs,
+            }
             for own in outcome.sources
         ],
         "configurations": [

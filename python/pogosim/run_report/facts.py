@@ -111,12 +111,12 @@ def facts_of(
     periods = [float(np.median(np.diff(run.time_s))) for run in runs if len(run.time_s) > 1]
     often = f", recorded every {np.median(periods):.6g} s" if periods else ""
     facts.append(("time", f"{first:.9g} s to {last:.9g} s{often}"))
-    engine = [f"{name.replace('_', ' ')} {configuration[name]}" for name in ("time_step",) if name in configuration]
-    if "physics_engine" in configuration:
-        engine.append(f"engine {configuration['physics_engine']}")
-    if engine:
-        facts.append(("physics", ", ".join(f"{text} s" if text.startswith("time step") else text for text in engine)))
-    return facts
+    physics = [
+        text.format(configuration[key])
+        for key, text in (("time_step", "time step {} s"), ("physics_engine", "engine {}"))
+        if key in configuration
+    ]
+    return [*facts, ("physics", ", ".join(physics))] if physics else facts
 
 
 def combinations_told(metadata: Mapping[str, Any]) -> str:
