@@ -1,7 +1,10 @@
 #include "process/caught_signals.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cstddef>
+#include <string_view>
 
 namespace pogosim {
 
@@ -79,6 +82,18 @@ void give_back_signal(int signal) {
     caught(signal).handler = nullptr;
 }
 
+namespace {
+
+/// From a handler; a shell says it only of programs that it runs in the foreground.
+void say_ended_by_alarm() {
+    constexpr std::string_view kLine =
+        "Error: ended by an alarm that the program or its host has set (alarm(), setitimer(), timer_create()) and does "
+        "not handle\n";
+    [[maybe_unused]] ssize_t const ignored = write(STDERR_FILENO, kLine.data(), kLine.size());
+}
+
+}  // namespace
+
 void pass_on(int signal, siginfo_t* info, void* context) {
     struct sigaction const& before = caught(signal).before;
     bool const is_alarm = signal == SIGALRM || signal == SIGPROF;
@@ -92,6 +107,9 @@ void pass_on(int signal, siginfo_t* info, void* context) {
     void const* const frame = __builtin_frame_address(0);
     if (!has_handler || (is_stale && !is_alarm) || comes_back(signal, frame)) {
         std::signal(signal, SIG_DFL);
+        if (is_alarm) {
+            say_ended_by_alarm();
+        }
         if (is_alarm || info->si_code <= 0) {  // sent: it does not come again by itself, as a crash does
             std::raise(signal);
         }

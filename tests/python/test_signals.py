@@ -462,3 +462,10 @@ def test_limit_of_a_step_counts_the_processor_time_of_its_own_thread(build: Buil
     settings = {"user_code_timeout": 0.5, "simulation_time": 0.2}
     result = end(start(build(busy), tmp_path, settings), tmp_path)
     assert (result.code, result.errors) == (0, "")
+
+
+def test_alarm_that_the_program_does_not_handle_is_told(build: Build, tmp_path: Path) -> None:
+    program = build("void user_init(void) { alarm(1); }\nvoid user_step(void) { usleep(10); }")
+    result = end(start_in(program, tmp_path, {**LONG, "GUI_speed_up": 1.0}), tmp_path)
+    assert result.code == -signal.SIGALRM
+    assert "Error: ended by an alarm that the program or its host has set (alarm(), " in result.errors
