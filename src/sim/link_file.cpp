@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/input_hash.hpp"
 #include "config/range.hpp"
 #include "config/scenario.hpp"
 #include "geometry/csv_text.hpp"
@@ -75,7 +76,9 @@ std::vector<std::size_t> first_columns(Table const& table, std::size_t count, st
 std::vector<Row> read_table(std::filesystem::path const& file, Table const& table) {
     std::vector<Row> rows;
     std::optional<std::vector<std::size_t>> columns;
-    for (CsvLine const& line : read_csv(file).lines) {
+    std::string const text = read_text(file);
+    InputHash::note(text);
+    for (CsvLine const& line : csv_in(text, file).lines) {
         if (line.text.empty()) {
             continue;
         }

@@ -22,6 +22,7 @@
 #include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/exact_math.hpp"
+#include "base/input_hash.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
 #include "config/find_file.hpp"
@@ -197,7 +198,10 @@ std::vector<MagneticRow> read_magnetometer_table(std::filesystem::path const& pa
     }
     std::vector<MagneticRow> rows;
     InvalidRows invalid;
-    for (CsvLine const& line : read_csv(path, {.delimiter = delimiter, .comment_prefix = table.comment_prefix}).lines) {
+    std::string const text = read_text(path);
+    InputHash::note(text);
+    for (CsvLine const& line :
+         csv_in(text, path, {.delimiter = delimiter, .comment_prefix = table.comment_prefix}).lines) {
         if (line.text.empty()) {
             continue;
         }

@@ -49,13 +49,8 @@ std::string Simulation::why_not_now_for_process() const {
     return "";
 }
 
-SavedState Simulation::state_for_process() {
+void Simulation::append_for_process(StateWriter& state) {
     Thread const thread(*this);
-    return present_state();
-}
-
-SavedState Simulation::present_state() {
-    StateWriter state;
     append_world(world_, state);
     physics_->append_state(state);
     state(broken_links_, touches_);
@@ -63,20 +58,25 @@ SavedState Simulation::present_state() {
         brain->append_for_process(state);
     }
     recorder_.append_state(state);
-    return {.identity = identity_of(controllers_.image(), scenario_, world_),
+}
+
+SavedState Simulation::kind_of_state() const {
+    return {.identity = identity_,
             .seed = seed_,
             .time_s = world_.time_s(),
             .hash = hash(),
             .has_ended = services_.stop_requested,
-            .rows = recorder_.all_rows(),
-            .state = state.bytes()};
+            .rows = recorder_.all_rows()};
 }
 
 /// What is known before any robot runs.
 void Simulation::check_states() {
+    if (options_.from_state || !options_.save_state.empty()) {
+        identity_ = identity_of(controllers_.image(), scenario_, world_, brains_, inputs_);
+    }
     if (options_.from_state) {
         SavedState const& saved = *options_.from_state;
-        check_identity(saved, identity_of(controllers_.image(), scenario_, world_));
+        check_identity(saved, identity_);
         std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
         // A run that was killed at its very end has nothing left to do.
         bool const may_be_over = options_.save_state_every_s.has_value();
@@ -111,7 +111,10 @@ void Simulation::check_states() {
 void Simulation::check_saving() {
     if (state_output_ && why_not_now_for_process().empty()) {
         try {
-            present_state();
+            for (auto const& brain : brains_) {
+                StateWriter trial;
+                brain->append_for_process(trial);
+            }
         } catch (ConfigError const& error) {
             go_on_unsaved(error.what());
         }
@@ -173,7 +176,9 @@ void Simulation::write_state() {
     saved_at_ = std::chrono::steady_clock::now();
     is_save_late_ = false;
     try {
-        state_output_->write(state_for_process());
+        StateWriter state;
+        append_for_process(state);
+        state_output_->write(kind_of_state(), state.bytes());
         is_state_unwritten_ = false;
     } catch (ConfigError const& error) {
         if (options_.save_state_every_s) {

@@ -14,6 +14,7 @@
 #include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
+#include "base/input_hash.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/rounded_time.hpp"
@@ -73,6 +74,13 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
+World make_world(Scenario const& scenario, std::uint32_t seed, std::uint64_t& inputs) {
+    InputHash const read;
+    World world = build_world(scenario, seed);
+    inputs = read.value();
+    return world;
+}
+
 Lighting make_lighting(Scenario const& scenario, World& world) {
     std::vector<LampSpec> const lamps = lamps_of(scenario, world);
     world.lamps = placed_lamps(scenario, world.arena);
@@ -85,7 +93,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
     : scenario_(std::move(scenario)),
       options_(std::move(options)),
       seed_(seed_of(scenario_)),
-      world_(build_world(scenario_, seed_)),
+      world_(make_world(scenario_, seed_, inputs_)),
       parameters_(scenario_, options_.conversions),
       crash_handler_(code_of_robots(), reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),
       services_{.parameters = &parameters_, .seed = seed_, .data = {}, .stop_requested = false, .warned = {}},

@@ -171,8 +171,10 @@ public:
     /// Goes on from a state of this run, as it did then. Arrays of the world stay where they are.
     void restore(SavedRun const& saved);
 
-    /// The state for another process, to go on from it there. Throws ConfigError, see Brain::append_for_process().
-    SavedState state_for_process();
+    /// The state for another process, to go on from it there, and what kind of run it is of. Throws ConfigError, see
+    /// Brain::append_for_process().
+    void append_for_process(StateWriter& state);
+    SavedState kind_of_state() const;
 
     /// Why there is no such state in this run; and why not between these two steps. Empty: there is.
     std::string why_never_for_process() const;
@@ -249,7 +251,6 @@ private:
     std::optional<UserFailure> run_steps();
     void check_states();
     void check_saving();
-    SavedState present_state();
     void go_on_from(SavedState const& saved);
     void save_state_if_due();
     bool is_state_due() const;
@@ -274,6 +275,7 @@ private:
     Scenario scenario_;
     RunOptions options_;
     std::uint32_t seed_;
+    std::uint64_t inputs_ = 0;  // InputHash of the world
     World world_;
     UserParameters parameters_;
     CrashHandler crash_handler_;
@@ -300,6 +302,7 @@ private:
     Touches touches_;
     mutable std::optional<ObservedMotions> observed_motions_;  // from the first look at them on
     std::unique_ptr<WindowDriver> window_;                     // null without a window
+    RunIdentity identity_;                                     // as it began; empty: no state is saved or taken
     std::unique_ptr<StateOutput> state_output_;                // null: no state is saved, or it was
     bool is_save_late_ = false;                                // the state is due, and a robot waits
     std::chrono::steady_clock::time_point saved_at_{};         // with save_state_every_s: when that was done last

@@ -6,17 +6,19 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <istream>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "base/error.hpp"
 #include "base/escaped.hpp"
 #include "base/fnv_1a.hpp"
 #include "base/new_file.hpp"
 #include "config/configuration_text.hpp"
-#include "config/looked_up.hpp"
+#include "firmware/firmware_brain.hpp"
 #include "physics/physics_engine.hpp"
 #include "pogosim/version.h"
 #include "process/loaded_modules.hpp"
@@ -146,19 +148,27 @@ std::string difference(std::string const& saved, std::string const& own) {
     return fmt::format("'{}' then, and '{}' now", then, new_one);
 }
 
-std::string_view text_of(StateWriter const& state) {
-    return {reinterpret_cast<char const*>(state.bytes().data()), state.bytes().size()};
+std::string_view text_of(std::span<std::byte const> bytes) {
+    return {reinterpret_cast<char const*>(bytes.data()), bytes.size()};
 }
 
-/// Throws ForeignState.
-SavedState state_in(std::string_view bytes) {
-    if (!bytes.starts_with(kSignature)) {
+/// The first bytes of a file; fewer: it has no more, or cannot be read.
+std::vector<std::byte> bytes_of(std::istream& file, std::size_t count) {
+    std::vector<std::byte> bytes(count);
+    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
+}
+
+/// `bytes`: of the whole file, whose memory the state takes over. Throws ForeignState.
+SavedState state_in(std::vector<std::byte> bytes) {
+    if (!text_of(bytes).starts_with(kSignature)) {
         throw ForeignState("is not the state of a run");
     }
     if (bytes.size() < kHeadBytes) {
         throw ForeignState("is cut off");
     }
-    StateReader reader(std::as_bytes(std::span(bytes)).subspan(kSignature.size()));
+    StateReader reader(std::span<std::byte const>(bytes).subspan(kSignature.size()));
     std::uint32_t version = 0;
     std::uint64_t count = 0;
     reader(version, count);
@@ -167,23 +177,35 @@ SavedState state_in(std::string_view bytes) {
                                        version, kVersion));
     }
     std::size_t const rest = reader.rest().size();
-    if (rest < sizeof(std::uint64_t) || count != rest - sizeof(std::uint64_t)) {
+    if (rest < sizeof(std::uint64_t) || count > rest - sizeof(std::uint64_t)) {
         throw ForeignState(fmt::format("is cut off: it has {} bytes", bytes.size()));
+    }
+    if (std::uint64_t const more = rest - sizeof(std::uint64_t) - count; more > 0) {
+        throw ForeignState(fmt::format("is longer than the state that it begins with, by {}", counted(more, "byte")));
     }
     StateReader content(reader.take_bytes(count));
     std::uint64_t checksum = 0;
     reader(checksum);
-    if (fnv_1a(bytes.substr(0, kHeadBytes + count)) != checksum) {
+    if (fnv_1a(text_of(bytes).substr(0, kHeadBytes + count)) != checksum) {
         throw ForeignState("is damaged: its checksum is not that of its bytes");
     }
     SavedState saved;
-    content(saved);
+    std::size_t size = 0;
+    content(saved, size);
+    if (size != content.rest().size()) {
+        throw ForeignState("is damaged: its state has another size than it says");
+    }
+    std::size_t const end = bytes.size() - sizeof(checksum);
+    bytes.resize(end);
+    bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(end - size));
+    saved.state = std::move(bytes);
     return saved;
 }
 
 }  // namespace
 
-RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world) {
+RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world, Brains const& brains,
+                        std::uint64_t inputs) {
     RunIdentity identity;
     identity.version = POGOSIM_VERSION_STRING;
     std::vector<LoadedModule> const modules = loaded_modules();
@@ -198,13 +220,16 @@ RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, Wor
                         .is_periodic = world.periodic,
                         .physics_engine = physics_engine_behind(scenario.physics_engine)};
     identity.configuration = without_free_keys(configuration_text(scenario, run).resolved);
-    identity.files = fnv_1a(object_facts(scenario, world));
+    identity.files = fnv_1a(object_facts(scenario, world), inputs);
     for (Polygon const& polygon : world.arena.polygons) {
         identity.files = fnv_1a({reinterpret_cast<char const*>(polygon.data()), polygon.size() * sizeof(polygon[0])},
                                 identity.files);
     }
-    for (ObjectFile const& file : scenario.object_files) {
-        identity.files = fnv_1a(bytes_at(file.path), identity.files);
+    for (auto const& brain : brains) {
+        if (auto const* const firmware = dynamic_cast<FirmwareBrain const*>(brain.get())) {
+            std::vector<std::byte> const& bytes = firmware->program()->bytes;
+            identity.files = fnv_1a({reinterpret_cast<char const*>(bytes.data()), bytes.size()}, identity.files);
+        }
     }
     return identity;
 }
@@ -218,16 +243,17 @@ SavedState read_state(fs::path const& file) {
     if (!fs::is_regular_file(file, error)) {
         refuse(unread, "is not a file");
     }
-    std::ifstream const input(file, std::ios::binary);
+    std::ifstream input(file, std::ios::binary);
     if (!input) {
         refuse(unread, fmt::format("cannot be read: {}", std::generic_category().message(errno)));
     }
-    std::string const bytes = bytes_at(file);
+    std::uintmax_t const size = fs::file_size(file, error);
+    std::vector<std::byte> bytes = bytes_of(input, error ? 0 : static_cast<std::size_t>(size));
     if (bytes.empty()) {
         refuse(unread, "is empty: the run that was to write it has not");
     }
     try {
-        SavedState saved = state_in(bytes);
+        SavedState saved = state_in(std::move(bytes));
         saved.file = file;
         return saved;
     } catch (ForeignState const& foreign) {
@@ -264,8 +290,9 @@ void check_identity(SavedState const& saved, RunIdentity const& identity) {
 StateOutput::StateOutput(fs::path const& file) : name_(file) {
     try {
         std::error_code error;
-        if (fs::is_regular_file(file, error) && fs::file_size(file, error) > 0 &&
-            !bytes_at(file).starts_with(kSignature)) {
+        std::ifstream earlier(fs::is_regular_file(file, error) ? file : fs::path(), std::ios::binary);
+        std::vector<std::byte> const begin = bytes_of(earlier, kSignature.size());
+        if (!begin.empty() && text_of(begin) != kSignature) {
             throw ConfigError(
                 fmt::format("--save-state: '{}' is not the state of a run, and would be lost; choose another file, or "
                             "remove it",
@@ -285,17 +312,20 @@ StateOutput::StateOutput(fs::path const& file) : name_(file) {
     }
 }
 
-void StateOutput::write(SavedState const& saved) {
-    StateWriter state;
-    state(saved);
-    StateWriter all;
-    all.add_bytes(std::as_bytes(std::span(kSignature)));
-    all(kVersion, std::uint64_t{state.bytes().size()});
-    all.add_bytes(state.bytes());
-    all(fnv_1a(text_of(all)));
+void StateOutput::write(SavedState const& kind, std::span<std::byte const> state) {
+    StateWriter before;
+    before(kind, state.size());
+    StateWriter head;
+    head.add_bytes(std::as_bytes(std::span(kSignature)));
+    head(kVersion, std::uint64_t{before.bytes().size() + state.size()});
+    head.add_bytes(before.bytes());
+    StateWriter checksum;
+    checksum(fnv_1a(text_of(state), fnv_1a(text_of(head.bytes()))));
     try {
         NewFile file(reserved_.path());
-        write_all(file.descriptor(), text_of(all));
+        for (std::span<std::byte const> const part : {std::span(head.bytes()), state, std::span(checksum.bytes())}) {
+            write_all(file.descriptor(), text_of(part));
+        }
         LockedFile written(reserved_.path(), file.descriptor());  // before another run can see it
         file.replace(reserved_);
         reserved_.keep();

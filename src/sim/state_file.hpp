@@ -3,7 +3,9 @@
 //     8 bytes  "PGSTATE\0"
 //     u32      version of this format
 //     u64      bytes of what follows, but for the checksum
-//     ...      what kind of run it is (SavedState without its last member), then the state
+//     ...      what kind of run it is (SavedState without its last member)
+//     u64      bytes of the state
+//     ...      the state
 //     u64      FNV-1a over all bytes so far
 #pragma once
 
@@ -11,11 +13,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/locked_file.hpp"
 #include "base/state_bytes.hpp"
+#include "brain/brain.hpp"
 #include "config/scenario.hpp"
 #include "process/program_image.hpp"
 #include "world/world.hpp"
@@ -37,7 +41,10 @@ struct RunIdentity {
     }
 };
 
-RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world);
+/// Of a run that has not begun. What it has read from files is taken as it was read: the files may change during the
+/// run. `inputs`: the InputHash of its world. Scripts, robot models and costs are in the configuration, word for word.
+RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world, Brains const& brains,
+                        std::uint64_t inputs);
 
 struct SavedState {
     std::filesystem::path file{};  // from which it was read
@@ -49,9 +56,10 @@ struct SavedState {
     std::int64_t rows = 0;   // of its data file so far, with those of earlier parts
     std::vector<std::byte> state{};
 
+    /// What comes before the bytes of the state.
     template <class Self, class State>
     static void visit_state(Self& self, State& state) {
-        state(self.identity, self.seed, self.time_s, self.hash, self.has_ended, self.rows, self.state);
+        state(self.identity, self.seed, self.time_s, self.hash, self.has_ended, self.rows);
     }
 };
 
@@ -68,7 +76,8 @@ public:
     explicit StateOutput(std::filesystem::path const& file);
 
     /// Replaces the file at once as a whole. Throws OutputError; the file is then as before.
-    void write(SavedState const& saved);
+    /// `kind`: all but the bytes of the state.
+    void write(SavedState const& kind, std::span<std::byte const> state);
 
 private:
     std::filesystem::path name_;

@@ -438,6 +438,56 @@ def test_other_runs_are_refused_with_what_differs(saved: tuple[Path, Path], tmp_
     assert "is of the program 'prog', and this is 'lights'" in why({}, other=Path(renamed))
 
 
+@pytest.fixture
+def versions(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Settings, str, bytes, bytes]:
+    """Keys that name a file `x.csv`, ... of this kind, the name, and two contents of it."""
+    kind = request.param
+    if kind == "firmware":
+        built = [firmware_of(tmp_path / name, text(f"pogobot_led_setColor({name}, 0, 0);")) for name in ("1", "2")]
+        return {OF_ROBOTS: "fw.elf"}, "fw.elf", built[0].read_bytes(), built[1].read_bytes()
+    if kind == "script":
+        scripts = [yaml.safe_dump({"script": [{"time_s": 0, "motors": [power, 0, 0]}]}) for power in (500, 600)]
+        return {OF_ROBOTS: {"script": "s.yaml"}}, "s.yaml", scripts[0].encode(), scripts[1].encode()
+    if kind == "model":
+        models = [yaml.safe_dump({"communication_radius": radius}) for radius in (80, 90)]
+        return {"objects.robots.robot_model": "m.yaml"}, "m.yaml", models[0].encode(), models[1].encode()
+    if kind == "arena":
+        square = (ROOT / "arenas" / "square.csv").read_bytes()
+        return {"arena_file": "a.csv"}, "a.csv", square, (ROOT / "arenas" / "disk.csv").read_bytes()
+    if kind == "links":
+        settings = {"links.rods": {"type": "rod", "between": ["robots"], "topology": "list", "file": "l.csv"}}
+        return settings, "l.csv", b"a,b\n0,1\n", b"a,b\n1,2\n"
+    table = (ROOT / "conf" / "example_magnetometer_reference.csv").read_bytes()
+    rows = table.splitlines(keepends=True)
+    settings = {"magnetometer": {"source": "csv", "csv": {"file": "t.csv", "harmonic_order": 3}}}
+    return settings, "t.csv", table, b"".join(rows[:-1])
+
+
+@pytest.mark.parametrize("versions", ["firmware", "script", "model", "arena", "links", "table"], indirect=True)
+def test_files_are_those_that_the_run_has_read(versions: tuple[Settings, str, bytes, bytes], tmp_path: Path) -> None:
+    """A file that was replaced while the run went on is another one: its own is taken."""
+    named, name, first, second = versions
+    settings = {"simulation_time": 1e6, "save_data_period": 1.0, "data_logger_flush_row_count": 100, **named}
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / name).write_bytes(first)
+    process = start(example("helloworld"), folder, settings, ["--save-state", "x"])
+    try:
+        wait_for_rows(folder / "data.feather")
+        (folder / "new").write_bytes(second)
+        (folder / "new").replace(folder / name)
+    finally:
+        process.terminate()
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    end_s = float(load_dataframe(folder / "data.feather")[0].time.max()) + 3
+    settings["simulation_time"] = end_s
+    assert "'x' is of a" in refused(example("helloworld"), folder, settings, "--from-state", "x")
+    (folder / name).write_bytes(first)
+    result = run(example("helloworld"), folder, settings, ["--from-state", "x"])
+    assert result.code == 0, result.text
+
+
 def test_files_that_are_no_states_are_refused(saved: tuple[Path, Path], tmp_path: Path) -> None:
     program, state = saved
     good = state.read_bytes()
@@ -453,7 +503,8 @@ def test_files_that_are_no_states_are_refused(saved: tuple[Path, Path], tmp_path
     chance = random.Random(1)
     for size in [9, 30, len(good) - 1, *(chance.randrange(len(good)) for _ in range(10))]:
         assert "'x' is " in why(good[:size])
-    assert "is cut off" in why(good + b"0")
+    assert "'x' is longer than the state that it begins with, by 1 byte" in why(good + b"0")
+    assert "by 999 bytes" in why(good + bytes(999))
     for _ in range(10):
         damaged = bytearray(good)
         damaged[chance.randrange(30, len(good))] ^= 1 << chance.randrange(8)
