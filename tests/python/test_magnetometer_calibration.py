@@ -18,7 +18,7 @@ from pogosim.errors import CalibrationError
 from pogosim.magnetometer.block import configuration_block, noise_lines, phase_near
 from pogosim.magnetometer.fit import CurveFit, basis, ellipse_errors, ellipse_of, fit_curve
 from pogosim.magnetometer.table import ReadingTable, read_reading_table
-from running import ROOT
+from running import ROOT, example, run
 
 REFERENCE = ROOT / "conf" / "example_magnetometer_reference.csv"
 HEADINGS = np.radians(np.arange(0.0, 360.0, 5.0))
@@ -179,6 +179,63 @@ def test_rows_that_are_not_numbers_are_left_out_with_a_warning(tmp_path: Path) -
     assert "10, ?, 4, 5" in warnings[0]
 
 
+# What a run reads with source: csv, with other bytes around the rows, or with rows among them that it skips.
+READ_BY_RUNS: dict[str, tuple[bytes, bytes, str]] = {
+    "a field too many": (b"", b"15,1,2,3,4\n", ""),
+    "Latin-1 in a comment": (b"# turned by Andr\xe9\n", b"", ""),
+    "Latin-1 in a comment below": (b"", b'  # "10 \xb0, by hand\n', ""),
+    "a stray byte": (
+        b"",
+        b"15,1,\xff2,3\n",
+        "1 of 73 rows are not four numbers, an angle and readings of 16 bits, and "
+        "are left out; the first one, in line 74, is 15, 1, \\xff2, 3",
+    ),
+    "too few fields": (
+        b"\n\n",
+        b"15,1,2\n15\n",
+        "2 of 74 rows are not four numbers, an angle and readings of 16 bits, "
+        "and are left out; the first one, in line 76, is 15, 1, 2",
+    ),
+    "a comment behind a row": (b"", b"15,1,2,3 # by hand\n", "in line 74, is 15, 1, 2, 3 # by hand"),
+    "what Python takes for numbers": (b"", b"1_5,1,2,3\n15,nan,2,3\n15,+-1,2,3\n", "3 of 75 rows are not"),
+    "line ends in quotes": (b"", b'"15",1,2,3,"by\nhand, ""slowly"""\n\n15,1,2,?', "in line 77, is 15, 1, 2, ?"),
+    "blank lines and blanks": (b"\n \t\n", b"\t \r\n 15 ,\t1,2, 3\r\r", ""),
+}
+
+
+@pytest.mark.parametrize("name", READ_BY_RUNS)
+def test_tables_are_read_by_the_rules_of_runs(name: str, tmp_path: Path) -> None:
+    before, after, expected = READ_BY_RUNS[name]
+    own = lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1)))
+    path = tmp_path / "table.csv"
+    path.write_bytes(before + "\n".join(["angle,mag_x,mag_y,mag_z", *own, ""]).encode() + after)
+    warnings: list[str] = []
+    read = read_reading_table(path, None, False, warnings.append)
+    assert len(warnings) == bool(expected)
+    assert expected in "".join(warnings)
+    assert len(read.reading) - len(own) in (0, 1)
+    # As many rows are left out as a run skips.
+    settings = {"magnetometer": {"source": "csv", "csv": {"file": str(path)}}}
+    done = run(example("helloworld"), tmp_path, settings, ["-v"])
+    assert f"fitted to {len(read.reading)} rows" in done.output + done.errors
+    assert ("skipped" in done.errors) == bool(expected)
+
+
+def test_column_that_is_there_twice_is_a_warning_and_the_first_one_is_read(tmp_path: Path) -> None:
+    own = table(coefficients(160.0, 140.0, 0.3, 0.1))
+    path = written(tmp_path, [f"{row},7" for row in lines_of(own)], "angle,mag_x,mag_y,mag_z,Mag_X")
+    warnings: list[str] = []
+    read = read_reading_table(path, None, False, warnings.append)
+    assert np.allclose(read.reading, own.reading, atol=1e-3)
+    assert warnings == [f"{path}: the column 'mag_x' stands there several times; the first one is read"]
+
+
+def test_quotes_that_do_not_end_are_refused_with_their_line(tmp_path: Path) -> None:
+    path = written(tmp_path, [*lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1))), '15,"1"",2,3', "20,1,2,3"])
+    with pytest.raises(CalibrationError, match=r"table\.csv:74: a text in double quotes begins on this line and does"):
+        read_reading_table(path, None, False, pytest.fail)
+
+
 @pytest.mark.parametrize("row", ["1e308,1,2,3", "10,1e308,2,3", "10,1,-32769,3", "10,1,2,32768", "10,1,2,-inf"])
 def test_rows_that_no_sensor_can_have_measured_are_left_out(row: str, tmp_path: Path) -> None:
     own = lines_of(table(coefficients(160.0, 140.0, 0.3, 0.1)))
@@ -189,7 +246,7 @@ def test_rows_that_no_sensor_can_have_measured_are_left_out(row: str, tmp_path: 
     assert "1 of 73 rows are not four numbers, an angle and readings of 16 bits, and are left out" in warnings[0]
 
 
-@pytest.mark.parametrize("text", ["," * 100000, "angle,mag_x,mag_y,mag_z\n" + "1," * 100000, "x" * 100000 + ",b\n1,2"])
+@pytest.mark.parametrize("text", ["," * 100000, "angle,mag_x,mag_y,mag_z\n" + "x," * 100000, "x" * 100000 + ",b\n1,2"])
 def test_long_lines_are_refused_soon_and_not_repeated(text: str, tmp_path: Path) -> None:
     path = written(tmp_path, [text], header="")
     with pytest.raises(CalibrationError) as refused:

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
-from pogosim.calibration.reading import Warn, separator
+from pogosim.calibration.reading import Warn
 from pogosim.calibration.tracks import Floats
 from pogosim.errors import CalibrationError
+from pogosim.lines import counted
+from pogosim.magnetometer.csv_text import CsvLine, number_in, read_lines
 
 AXES = ("x", "y", "z")
 SYNONYMS = {
@@ -25,7 +26,6 @@ SYNONYMS = {
 DECIMAL_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+")
 EXPECTED = "expected the columns angle, mag_x, mag_y and mag_z"
 TURN = {"degrees": 360.0, "radians": 2.0 * math.pi}
-MOST_COLUMNS = 1000
 LARGEST_ANGLE = 1e6  # in either unit, as in the simulator
 COUNTS = (-32768.0, 32767.0)  # of a sensor with 16 bits
 SHOWN = 200  # characters of a line of the table in a message
@@ -48,7 +48,7 @@ class ReadingTable:
 
 
 def read_reading_table(path: Path, unit: str | None, is_y_up: bool, warn: Warn) -> ReadingTable:
-    """Read a table of readings.
+    """Read a table of readings, by the rules of a run with `source: csv`.
 
     Args:
         path: CSV file with a header, or with four columns of numbers: angle, x, y, z.
@@ -62,36 +62,23 @@ def read_reading_table(path: Path, unit: str | None, is_y_up: bool, warn: Warn) 
     """
     if path.exists() and not path.is_file():
         raise CalibrationError(f"{path} is not a file; {EXPECTED}")
-    rows = numbers(named(read_csv(path), path), path, warn)
-    angles = rows["angle"].to_numpy(float)
+    lines = read_lines(path)
+    if not lines:
+        raise CalibrationError(f"{path} is empty; {EXPECTED}")
+    if all(not math.isnan(number_in(name)) for name in without_empty_end(lines[0].fields)):
+        places = places_without_header(lines[0].fields, path)
+    else:
+        places = places_in_header(lines.pop(0).fields, path, warn)
+    rows = numbers(lines, places, path, warn)
+    angles = rows[:, 0]
     known = unit or unit_of(angles)
     angle_rad = angles * (2.0 * math.pi / TURN[known])
-    return ReadingTable(-angle_rad if is_y_up else angle_rad, rows[list(AXES)].to_numpy(float), str(path))
+    return ReadingTable(-angle_rad if is_y_up else angle_rad, rows[:, 1:], str(path))
 
 
-def read_csv(path: Path) -> pd.DataFrame:
-    """Read a CSV file as text; columns without a header have numbers for names."""
-    try:
-        sep = separator(path, "utf-8-sig")
-        check_columns(path, sep)
-        table = pd.read_csv(
-            path, comment="#", encoding="utf-8-sig", index_col=False, sep=sep, dtype=str, skipinitialspace=True
-        )
-        if all(is_number(str(name)) for name in table.columns):
-            table = pd.read_csv(path, comment="#", encoding="utf-8-sig", sep=sep, dtype=str, header=None)
-    except pd.errors.EmptyDataError:
-        raise CalibrationError(f"{path} is empty; {EXPECTED}") from None
-    except (ValueError, pd.errors.ParserWarning) as error:
-        raise CalibrationError(f"{path} is not a CSV file of readings: {' '.join(str(error).split())}") from None
-    return table
-
-
-def check_columns(path: Path, sep: str) -> None:
-    """Raise CalibrationError for a file with very many columns, which would take long to read."""
-    with path.open(encoding="utf-8-sig") as file:
-        columns = 1 + max((line.count(sep) for line in file if not line.startswith("#")), default=0)
-    if columns > MOST_COLUMNS:
-        raise CalibrationError(f"{path} has a line of {columns} columns; {EXPECTED}")
+def without_empty_end(fields: Sequence[str]) -> Sequence[str]:
+    """Return fields without empty ones at their end, where a line ends with a delimiter."""
+    return fields[: max((place for place, text in enumerate(fields, 1) if text), default=0)]
 
 
 def shortened(cells: Iterable[object]) -> str:
@@ -100,58 +87,54 @@ def shortened(cells: Iterable[object]) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]} ..."
 
 
-def is_number(text: str) -> bool:
-    """Tell whether a text is a number."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+def places_without_header(fields: Sequence[str], path: Path) -> list[int]:
+    """Return the places of angle, x, y and z in a table whose first line is one of numbers."""
+    found = len(without_empty_end(fields))
+    if found != len(SYNONYMS):
+        raise CalibrationError(f"{path} has {counted(found, 'column')} and no header; {EXPECTED}")
+    return list(range(found))
 
 
-def named(table: pd.DataFrame, path: Path) -> pd.DataFrame:
-    """Return the columns angle, x, y and z."""
-    if all(isinstance(name, int) for name in table.columns):
-        if table.shape[1] != len(SYNONYMS):
-            raise CalibrationError(f"{path} has {table.shape[1]} columns and no header; {EXPECTED}")
-        return table.set_axis(list(SYNONYMS), axis="columns")
-    by_name = {str(name).strip().lower(): name for name in table.columns}
-    found = {wanted: first_of(synonyms, by_name) for wanted, synonyms in SYNONYMS.items()}
-    missing = [SYNONYMS[wanted][0] for wanted, name in found.items() if name is None]
-    if missing:
-        there = shortened(table.columns)
-        raise CalibrationError(f"{path} has no column {', '.join(missing)}; {EXPECTED}, found {there}")
-    return pd.DataFrame({wanted: table[by_name[str(name)]] for wanted, name in found.items()})
+def places_in_header(names: Sequence[str], path: Path, warn: Warn) -> list[int]:
+    """Return the places of angle, x, y and z."""
+    plain = [name.lower() for name in names]
+    found = {wanted: next((name for name in synonyms if name in plain), None) for wanted, synonyms in SYNONYMS.items()}
+    if missing := [SYNONYMS[wanted][0] for wanted, name in found.items() if name is None]:
+        raise CalibrationError(f"{path} has no column {', '.join(missing)}; {EXPECTED}, found {shortened(names)}")
+    for name in found.values():
+        if plain.count(str(name)) > 1:
+            warn(f"{path}: the column '{name}' stands there several times; the first one is read")
+    return [plain.index(str(name)) for name in found.values()]
 
 
-def first_of(synonyms: Sequence[str], names: dict[str, str]) -> str | None:
-    """Return the first synonym that is a name."""
-    return next((name for name in synonyms if name in names), None)
+def numbers(lines: Sequence[CsvLine], places: Sequence[int], path: Path, warn: Warn) -> Floats:
+    """Return angle, x, y and z of all rows; those that no sensor can have measured are left out, with a warning.
 
-
-def numbers(rows: pd.DataFrame, path: Path, warn: Warn) -> pd.DataFrame:
-    """Make numbers of all cells; rows that no sensor can have measured are left out, with a warning."""
-    converted = rows.apply(pd.to_numeric, errors="coerce").astype(float)
-    converted["angle"] = converted["angle"].where(converted["angle"].between(-LARGEST_ANGLE, LARGEST_ANGLE))
-    for axis in AXES:
-        converted[axis] = converted[axis].where(converted[axis].between(*COUNTS))
-    complete = converted.dropna()
-    if left_out := len(rows) - len(complete):
-        first = int(np.flatnonzero(converted.isna().any(axis="columns").to_numpy())[0])
-        cells = rows.iloc[first].tolist()
-        has_comma = any(DECIMAL_COMMA.fullmatch(str(cell).strip()) for cell in cells)
-        found = f"the first one is {shortened(cells)}{'; write 0.5 for 0,5' if has_comma else ''}"
-        if complete.empty:
-            raise CalibrationError(
-                f"{path} has no row of four numbers, an angle and readings of 16 bits: {found}; {EXPECTED}"
-            )
-        warn(
-            f"{path}: {left_out} of {len(rows)} rows are not four numbers, an angle and readings of 16 bits, and are "
-            f"left out; {found}"
+    Fields behind those that are needed do not matter, as in a run.
+    """
+    rows = np.full((len(lines), len(places)), np.nan)
+    for row, (_, fields) in zip(rows, lines, strict=True):
+        row[:] = [number_in(fields[place]) if place < len(fields) else math.nan for place in places]
+    is_possible = (np.abs(rows[:, 0]) <= LARGEST_ANGLE) & ((rows[:, 1:] >= COUNTS[0]) & (rows[:, 1:] <= COUNTS[1])).all(
+        1
+    )
+    if is_possible.all() and len(rows):
+        return rows
+    found = ""
+    left_out = np.flatnonzero(~is_possible)
+    if len(left_out):
+        number, fields = lines[int(left_out[0])]
+        advice = "; write 0.5 for 0,5" if any(map(DECIMAL_COMMA.fullmatch, fields)) else ""
+        found = f"the first one, in line {number}, is {shortened(fields)}{advice}"
+    if len(left_out) == len(rows):
+        raise CalibrationError(
+            f"{path} has no row of four numbers, an angle and readings of 16 bits{found and f': {found}'}; {EXPECTED}"
         )
-    if complete.empty:
-        raise CalibrationError(f"{path} has no row of four numbers, an angle and readings of 16 bits; {EXPECTED}")
-    kept: pd.DataFrame = complete.reset_index(drop=True)
+    warn(
+        f"{path}: {len(left_out)} of {len(rows)} rows are not four numbers, an angle and readings of 16 bits, and are "
+        f"left out; {found}"
+    )
+    kept: Floats = rows[is_possible]
     return kept
 
 
