@@ -22,6 +22,7 @@ from running import ROOT, Run, example
 from yaml import safe_load
 
 PROGRAM = str(example("helloworld"))
+MOST = 2**63 - 1
 
 
 def task(folder: Path, seed: int, *more: str, into: str | None = None) -> Run:
@@ -135,8 +136,14 @@ def test_folder_with_another_run_is_refused_and_stays_as_it_is(tmp_path: Path) -
         ({"enable_data_logging": False}, [], "enable_data_logging: is false"),
         ({"result_filename_format": "{x}.feather"}, [], "result_filename_format: there is no key 'x'"),
         ({}, ["--seed", "4294967296"], "--seed: expected whole numbers from 0 to 4294967295; found 4294967296"),
-        ({}, ["--run-index", "-1"], "--run-index: expected a whole number of at least 0; found -1"),
-        ({}, ["--retry-attempt", "-1"], "--retry-attempt: expected a whole number of at least 0; found -1"),
+        ({}, ["--run-index", "-1"], f"--run-index: expected a whole number from 0 to {MOST}; found -1"),
+        (
+            {},
+            ["--run-index", str(MOST + 1)],
+            f"--run-index: expected a whole number from 0 to {MOST}; found {MOST + 1}",
+        ),
+        ({}, ["--retry-attempt", "-1"], f"--retry-attempt: expected a whole number from 0 to {MOST}; found -1"),
+        ({}, ["--retry-attempt", "1" * 20], f"--retry-attempt: expected a whole number from 0 to {MOST}; found 111"),
         ({}, ["-S", "/bin/ls"], "/bin/ls is not a simulator"),
         ({}, ["-o", "many.yaml"], "cannot use many.yaml"),
         ({}, ["-c", "none.yaml"], "cannot read the configuration none.yaml"),
@@ -150,6 +157,14 @@ def test_task_that_cannot_be_done_is_one_line(
     assert (result.code, result.errors.count("\n")) == (2, 1), result.errors
     assert said in result.errors
     assert not (tmp_path / "tasks" / "1" / "pogobatch_task.json").exists()
+
+
+def test_greatest_number_of_a_run_can_be_merged(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 7, "--run-index", str(MOST), "--retry-attempt", str(MOST)).code == 0
+    assert merge(tmp_path, "tasks").code == 0
+    (name,) = results(tmp_path)
+    assert set(load_dataframe(tmp_path / "results" / name)[0]["run"]) == {MOST}
 
 
 def test_refused_value_is_named_with_the_line_of_the_user(tmp_path: Path) -> None:

@@ -70,16 +70,17 @@ def tell(text: str) -> None:
         say(text)
 
 
-def at_least(smallest: int, value: Any, name: str) -> int:
+def at_least(smallest: int, value: Any, name: str, largest: int | None = None) -> int:
     """Return a whole number.
 
     Raises:
-        BatchError: It is none, or too small.
+        BatchError: It is none, too small, or too large.
     """
     try:
         number = operator.index(value)
     except TypeError:
         number = smallest - 1
-    if isinstance(value, bool) or number < smallest:
-        raise BatchError(f"{name}: expected a whole number of at least {smallest}; found {shown(value)}")
+    if isinstance(value, bool) or number < smallest or (largest is not None and number > largest):
+        range_text = f"of at least {smallest}" if largest is None else f"from {smallest} to {largest}"
+        raise BatchError(f"{name}: expected a whole number {range_text}; found {shown(value)}")
     return number

@@ -13,7 +13,7 @@ from pogosim.batch.attempts import attempt_from_state, attempt_in
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
 from pogosim.batch.identity import find_program, program_digest
-from pogosim.batch.manifests import TASK, read_manifest, task_entries, write_json
+from pogosim.batch.manifests import MOST, TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import file_name, new_columns
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.parts import WITH_SEEDS
@@ -125,8 +125,8 @@ def execute_task(
         seed: Seed, 0 to 2^32-1.
         output_dir: The folder, which is made. What the same run has left there, or one that failed, is replaced; the
             same are runs with the same seed whose results have the same name and columns.
-        run_index: Number of the run, from 0 on, for the column `run`.
-        retry_attempt: Which attempt this is, from 0 on, for the column `retry_attempt`.
+        run_index: Number of the run, 0 to 2^63-1, for the column `run`.
+        retry_attempt: Which attempt this is, 0 to 2^63-1, for the column `retry_attempt`.
         gui: Let the run open its window.
         force: Replace another run, too.
         save_states: Save the state of the run in the folder after this wall-clock time each, in s, and when it is
@@ -137,8 +137,8 @@ def execute_task(
         TaskError: The run failed.
     """
     (seed,) = listed_seeds([seed], "--seed")
-    at_least(0, run_index, "--run-index")
-    at_least(0, retry_attempt, "--retry-attempt")
+    at_least(0, run_index, "--run-index", MOST)
+    at_least(0, retry_attempt, "--retry-attempt", MOST)
     program = str(given.path("simulator_binary", simulator_binary))
     configuration = Configuration(given.path("config_path", config_path))
     entries = configuration.resolved()
