@@ -7,6 +7,7 @@ import logging
 import os
 import sys
 import unicodedata
+from collections.abc import Iterable
 
 LONGEST = 10_000  # characters of a line, more than a path has; the rest is cut
 
@@ -46,11 +47,22 @@ def say_text(text: str) -> None:
     Raises:
         OSError: The standard output cannot be written. Nothing more is written to it, then.
     """
+    say_parts([text])
+
+
+def say_parts(parts: Iterable[str]) -> None:
+    """Print a text as say_text() does, part by part as they are made.
+
+    Raises:
+        OSError: The standard output cannot be written. Nothing more is written to it, then.
+    """
     if sys.stdout is None:
         return
     encoding = sys.stdout.encoding or "utf-8"
     try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+        for part in parts:
+            print(part.encode(encoding, "backslashreplace").decode(encoding), end="")
+        print(flush=True)
     except OSError:
         # Otherwise, Python would flush again when it exits, and fail again.
         nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import signal
 import subprocess
 import sys
+import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import pandas as pd
 import pytest
@@ -22,7 +25,7 @@ from batches import (
     wait_for_simulators,
     write_options,
 )
-from pogosim.batch.command_line import parser
+from pogosim.batch.command_line import main, parser
 from pogosim.batch.run_files import with_files_beside
 from pogosim.batch.subcommands import SUBCOMMANDS, subparser
 from pogosim.utils import load_dataframe
@@ -200,6 +203,50 @@ def test_json_is_whole_however_many_runs_there_are_and_whatever_their_names(tmp_
     assert (len(entries["tasks"]), entries["task_count"]) == (2000, 2000)
     assert entries["tasks"][0]["batch_choices"]["label"] == "a\x1b[2J\u202e"
     assert shown.output.isascii()
+
+
+def printing_to(file: TextIO) -> Callable[[list[str]], int]:
+    """Return the command, whose output goes to a file."""
+
+    def command(words: list[str]) -> int:
+        with contextlib.redirect_stdout(file):
+            return main(words)
+
+    return command
+
+
+def test_plan_of_many_runs_keeps_none_of_them(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    seeds = ["--seeds", "5:100004", "--part", "1/2"]
+    tracemalloc.start()
+    try:
+        for more, lines in ([], 3), (["--show-tasks"], 100_003), (["--json"], 1):
+            with (tmp_path / "output.txt").open("w") as file:
+                before = tracemalloc.get_traced_memory()[0]
+                tracemalloc.reset_peak()
+                assert run_main(tmp_path, ["plan", "-c", "many.yaml", *seeds, *more], printing_to(file)).code == 0
+                assert tracemalloc.get_traced_memory()[1] - before < 5e6, more
+            with (tmp_path / "output.txt").open() as file:
+                assert sum(1 for _ in file) == lines
+    finally:
+        tracemalloc.stop()
+    entries = json.loads((tmp_path / "output.txt").read_text())
+    assert entries["seeds"] == list(range(5, 100_005))
+    assert [len(entries["tasks"]), entries["task_count"]] == [100_000, 100_000]
+    assert entries["tasks"][50_000] == {
+        "combination_ordinal": 1,
+        "logical_run": 1,
+        "seed": 6,
+        "output": "result.feather",
+        "batch_choices": {"objects.robots.nb": 3},
+    }
+
+
+def test_plan_with_a_wrong_seed_has_no_runs_in_its_json(tmp_path: Path) -> None:
+    write_options(tmp_path, {"seed": {"batch_options": [1, "no"], "default_option": 1}})
+    refused = plan(tmp_path, "-r", "2", "--seed-from", "config", "--json")
+    assert (refused.code, report(refused)["ok"], "tasks" in report(refused)) == (2, False, False)
+    assert "--seed-from config needs a whole number" in report(refused)["error"]
 
 
 def test_plan_warns_and_refuses_as_run_does(tmp_path: Path) -> None:

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import logging
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from types import FrameType
 from typing import Any, NoReturn
 
 from pogosim.batch.errors import BatchError, NothingSelectedError, reason
 from pogosim.batch.run_options import DONE, INTERRUPTED, NO_SUCH_OUTPUT, RUNS_FAILED, WRONG
-from pogosim.lines import LineFormatter, say_text
+from pogosim.lines import LineFormatter, say_parts
 
 log = logging.getLogger("pogobatch")
 
-Report = dict[str, Any]  # what a command prints as JSON
+Report = dict[
+    str, Any
+]  # what a command prints as JSON; values may be iterables whose items are made as they are printed
+
+ITEMS = 1000  # printed at a time
 
 
 class RunsFailedError(Exception):
@@ -80,9 +85,31 @@ def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: st
         code, error = called(command, report, kept)
     if as_json:
         problem = {"error": error} if error else {}
-        with contextlib.suppress(OSError):  # the reader has gone
-            say_text(json.dumps({"operation": operation, "ok": code == DONE, **report, **problem}))
+        try:
+            say_parts(json_parts({"operation": operation, "ok": code == DONE, **report, **problem}))
+        except OSError:
+            pass  # the reader has gone
+        except KeyboardInterrupt:
+            log.error("interrupted")
+            return INTERRUPTED
     return code
+
+
+def json_parts(report: Report) -> Iterator[str]:
+    """Yield the text of a report as json.dumps() returns it, without making all of its items first."""
+    start = "{"
+    for key, value in report.items():
+        yield f"{start}{json.dumps(key)}: "
+        start = ", "
+        if isinstance(value, (str, list, tuple, dict)) or not isinstance(value, Iterable):
+            yield json.dumps(value)
+            continue
+        items, before = iter(value), "["
+        while some := list(itertools.islice(items, ITEMS)):
+            yield before + json.dumps(some)[1:-1]
+            before = ", "
+        yield "]" if before != "[" else "[]"
+    yield "}"
 
 
 def called(command: Callable[[], Report], report: Report, kept: str | None) -> tuple[int, str]:

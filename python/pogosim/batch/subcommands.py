@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+import contextlib
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,11 +22,13 @@ from pogosim.batch.run_options import (
     give_program,
     runner_of,
 )
-from pogosim.lines import counted
+from pogosim.lines import counted, say
 from pogosim.nearest_name import listed, unknown
 
 if TYPE_CHECKING:
     from pogosim.batch.runner import PogobotBatchRunner
+
+LINES = 1000  # printed at a time
 
 
 class Subcommand(NamedTuple):
@@ -57,47 +61,79 @@ def plan(arguments: argparse.Namespace) -> Report:
     if arguments.simulator_binary is not None:
         find_program(arguments.simulator_binary)
     runner = runner_of(arguments, is_campaign=True)
-    tasks = list(planned(runner))
-    outputs = list(dict.fromkeys(str(task["output"]) for task in tasks))
-    combinations = len(tasks) // runner.runs
-    tell(f"{counted(combinations, 'combination')} x {counted(runner.runs, 'seed')}: {counted(len(tasks), 'run')}")
+    runs = PlannedRuns(runner)
+    outputs = list(dict.fromkeys(output for _, output in runs.selected))
+    combinations = len(runs.selected)
+    tell(f"{counted(combinations, 'combination')} x {counted(runner.runs, 'seed')}: {counted(len(runs), 'run')}")
     if arguments.part is not None:
         number, parts = part_of(arguments.part)
-        tasks = tasks[number::parts]
-        tell(f"Part {number} of {parts}: {counted(len(tasks), 'run')}")
+        runs.which = runs.which[number::parts]
+        tell(f"Part {number} of {parts}: {counted(len(runs), 'run')}")
     for output in outputs:
         tell(f" - {output}")
-    for task in tasks if arguments.show_tasks else ():
-        choices = "".join(f", {key}: {value}" for key, value in task["batch_choices"].items())
-        tell(f"run {task['logical_run']} of {task['output']}, seed {task['seed']}{choices}")
+    if arguments.show_tasks:
+        lines = (line_of(task) for task in runs)
+        with contextlib.suppress(OSError):  # the reader has gone
+            while some := list(itertools.islice(lines, LINES)):
+                say(*some)
     return {
         "config": arguments.config,
         "combinations": combinations,
-        "seeds": list(runner.seeds),
-        "task_count": len(tasks),
+        "seeds": runner.seeds,
+        "task_count": len(runs),
         "outputs": outputs,
-        "tasks": tasks,
+        "tasks": runs,
     }
 
 
-def planned(runner: PogobotBatchRunner) -> Iterator[dict[str, Any]]:
-    """Yield the runs of a batch."""
-    from pogosim.batch.manifests import for_json
-    from pogosim.batch.option_words import chosen_in
-    from pogosim.varied import varied_parameters
+def line_of(task: Mapping[str, Any]) -> str:
+    """Return what `--show-tasks` says of a run."""
+    choices = "".join(f", {key}: {value}" for key, value in task["batch_choices"].items())
+    return f"run {task['logical_run']} of {task['output']}, seed {task['seed']}{choices}"
 
-    selected = runner.checked_selection()
-    varied = varied_parameters([entries for entries, _ in selected])
-    for number, (entries, output) in enumerate(selected):
-        choices = chosen_in(varied, number)
-        for run in range(runner.runs):
-            yield {
-                "combination_ordinal": number,
-                "logical_run": run,
-                "seed": runner.compute_seed(entries, run),
-                "output": output,
-                "batch_choices": for_json(choices),
-            }
+
+class PlannedRuns:
+    """The runs of a batch, each made when it is asked for: there may be millions.
+
+    Attributes:
+        selected: The combinations, each with its file of results.
+        which: Numbers of the runs that are meant, of all those of the batch.
+
+    Raises:
+        BatchError: The batch cannot be done.
+    """
+
+    def __init__(self, runner: PogobotBatchRunner) -> None:
+        from pogosim.varied import varied_parameters
+
+        self.runner = runner
+        self.selected = runner.checked_selection()
+        self.which = range(len(self.selected) * runner.runs)
+        self.varied = varied_parameters([entries for entries, _ in self.selected])
+        for entries, _ in self.selected:
+            runner.compute_seed(entries, 0)  # to find errors before anything is printed
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.which)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield what JSON says of each."""
+        from pogosim.batch.manifests import for_json
+        from pogosim.batch.option_words import chosen_in
+
+        for number, some in itertools.groupby(self.which, lambda task: task // self.runner.runs):
+            entries, output = self.selected[number]
+            choices = for_json(chosen_in(self.varied, number))
+            for task in some:
+                run = task % self.runner.runs
+                yield {
+                    "combination_ordinal": number,
+                    "logical_run": run,
+                    "seed": self.runner.compute_seed(entries, run),
+                    "output": output,
+                    "batch_choices": choices,
+                }
 
 
 # ---- task ----
