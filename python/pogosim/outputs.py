@@ -172,6 +172,30 @@ def lock(file: IO[bytes] | IO[str], patience_s: float = 0.0) -> bool:
         return True
 
 
+@contextlib.contextmanager
+def locked_output(path: Path, name: PathLike) -> Iterator[None]:
+    """Keep runs from writing a file meanwhile, where there are locks and the file is there.
+
+    Args:
+        path: As real_output() returns it.
+        name: What errors call it.
+
+    Raises:
+        OutputError: A run is writing it.
+    """
+    try:
+        file = path.open("rb")
+    except (FileNotFoundError, PermissionError):
+        yield
+        return
+    with file:
+        is_locked = lock(file)
+        # A run that has just ended may have replaced it.
+        if not is_locked or not (path.exists() and os.path.samestat(path.stat(), os.fstat(file.fileno()))):
+            raise OutputError(f"{name} is in use by another run; wait for it to finish, or choose another file")
+        yield
+
+
 def check_readable(names: Iterable[str]) -> None:
     """Open files, to find errors early. Folders, pipes and files of a pattern are checked later.
 

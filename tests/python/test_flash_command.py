@@ -7,6 +7,7 @@ import os
 import random
 import subprocess
 import sys
+import time
 import tracemalloc
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from conftest import Compile
 from flash_files import EMPTY, FLASH, PAGE, Record, archive, checksum, written
 from pogosim.command.main import main
 from pogosim.flash_archive import checksum_of, records_of
-from running import SCENE, run
+from running import SCENE, example, run, start
 
 RECORDS = [written(0), Record(1), Record(0, "ants", pages={5: bytes(PAGE)})]
 
@@ -339,6 +340,33 @@ def test_make_replaces_what_is_there_only_if_it_is_told_to(
     assert Path("x.flash").read_bytes() == data
     assert flash("make", name, "--from", "robots", "0", "a.bin", "--force") == 0
     assert Path("x.flash").read_bytes() == archive([Record(0, pages={0: b"a".ljust(PAGE, b"\xff")})])
+
+
+@pytest.mark.parametrize("more", [(), ("--force",)])
+def test_make_leaves_an_archive_that_a_run_writes(
+    more: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("a.bin").write_bytes(b"")
+    settings: dict[str, object] = {
+        "simulation_time": 1e6,
+        "flash_state.output_file": "y.flash",
+        "enable_data_logging": False,
+    }
+    running = start(example("helloworld"), tmp_path, settings)
+    try:
+        while not Path("y.flash").exists() or Path("y.flash").stat().st_size < len(EMPTY):
+            assert running.poll() is None
+            time.sleep(0.01)
+        assert flash("make", "y.flash", "--from", "robots", "0", "a.bin", *more) == 2
+        assert capsys.readouterr().err == (
+            "pogosim flash: y.flash is in use by another run; wait for it to finish, or choose another file\n"
+        )
+        assert Path("y.flash").read_bytes() == EMPTY
+    finally:
+        running.kill()
+        running.communicate()
+    assert flash("make", "y.flash", "--from", "robots", "0", "a.bin", *more) == 0
+    assert Path("y.flash").read_bytes() == archive([Record(0)])
 
 
 @pytest.mark.parametrize("data", [b"", EMPTY])

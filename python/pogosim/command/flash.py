@@ -23,7 +23,7 @@ from pogosim.flash_archive import (
     write_archive,
 )
 from pogosim.lines import counted, say
-from pogosim.outputs import OutputError, leads_to, partial_output, real_output, told
+from pogosim.outputs import OutputError, leads_to, locked_output, partial_output, real_output, told
 
 IDS = 65536
 EMPTY = bytes_of_head(0)
@@ -153,6 +153,12 @@ def make(options: argparse.Namespace) -> tuple[int, list[str]]:
     for file in ([] if options.config is None else [options.config]) + [file for *_, file in options.binaries]:
         if leads_to(options.archive, file):
             raise OutputError(f"{options.archive} is an input, which would be lost; choose another archive")
+    with locked_output(output, options.archive):
+        return make_there(output, options)
+
+
+def make_there(output: Path, options: argparse.Namespace) -> tuple[int, list[str]]:
+    """Write an archive that no run is writing, to its real place. Returns the exit code, and lines to print."""
     if not options.force:
         check_nothing_is_lost(options.archive)
     if options.config is None and not options.binaries:
