@@ -112,12 +112,12 @@ def test_memory_does_not_grow_with_the_archive(capsys: pytest.CaptureFixture[str
 
 def test_make_sorts_categories_by_their_bytes() -> None:
     Path("own.bin").write_bytes(b"x")
-    categories = ["b\udcff", "b", "b\U0001f41c", "b\u00e9", "a"]
+    categories = ["b\U0001f600", "b", "b\U0001f41c", "b\u00e9", "a"]
     given = [word for category in categories for word in ("--from", category, "0", "own.bin")]
     assert flash("make", "made.flash", *given) == 0
     with Path("made.flash").open("rb") as file:
         made = [record.category for record, _ in records_of(file)]
-    assert made == ["a", "b", "b\u00e9", "b\U0001f41c", "b\udcff"]
+    assert made == ["a", "b", "b\u00e9", "b\U0001f41c", "b\U0001f600"]
 
 
 @pytest.mark.parametrize(
@@ -207,12 +207,26 @@ def test_extract_refuses_damaged_memory(capsys: pytest.CaptureFixture[str]) -> N
     assert "the record of robot #0 of category 'robots' is damaged" in capsys.readouterr().err
 
 
-def test_category_may_have_any_bytes() -> None:
+def test_category_may_have_a_long_name() -> None:
     Path("a.bin").write_bytes(b"")
-    assert flash("make", "y.flash", "--from", "\udcff", "2", "a.bin", "--from", "r" * 65535, "1", "a.bin") == 0
-    data = Path("y.flash").read_bytes()
-    assert data.endswith(archive([Record(2, "\udcff")])[len(EMPTY) :])
+    assert flash("make", "y.flash", "--from", "r" * 65535, "1", "a.bin", "--from", "\u00e9", "2", "a.bin") == 0
+    assert Path("y.flash").read_bytes() == archive([Record(1, "r" * 65535), Record(2, "\u00e9")])
     assert flash("show", "y.flash") == 0
+
+
+def test_names_that_are_not_utf_8_are_shown_escaped(capsys: pytest.CaptureFixture[str]) -> None:
+    own = os.fsdecode(b"y\xff.flash")
+    Path(own).write_bytes(archive([Record(2, "a\udcff\u00e9"), Record(2, "b\udc80")]))
+    assert flash("show", own, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["file"] == "y\\xff.flash"
+    assert [record["category"] for record in found["records"]] == ["a\\xff\u00e9", "b\\x80"]
+    assert flash("show", own) == 0
+    assert "\na\\xff\u00e9    2   0 " in capsys.readouterr().out
+    assert flash("extract", own, "-r", "2", "-o", "b.bin") == 2
+    assert "a\\xff\u00e9, b\\x80" in capsys.readouterr().err
+    assert flash("extract", own, "-r", "2", "--category", "b\udc80", "-o", "b.bin", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["category"] == "b\\x80"
 
 
 def test_short_binary_is_followed_by_blank_memory() -> None:
@@ -233,6 +247,7 @@ def test_short_binary_is_followed_by_blank_memory() -> None:
         (("--from", "r", "1", "a.bin", "--from", "r", "1", "a.bin"), "--from r 1 is given twice"),
         (("--from", "r" * 65536, "1", "a.bin"), "expected at most 65535 bytes"),
         (("--from", "\u00e9" * 32768, "1", "a.bin"), "expected at most 65535 bytes"),
+        (("--from", "a\udcff", "1", "a.bin"), "the category 'a\\xff' is no text in UTF-8, as names in an archive are"),
         (("--from", "robots", "1", "pipe"), "pipe is not a file, but a pipe, a socket or a device; expected flash"),
         (("--from", "robots", "1", "."), ".: is a directory"),
         (("-c", "missing.yaml"), "cannot read the configuration missing.yaml"),

@@ -92,7 +92,7 @@ def show(options: argparse.Namespace) -> tuple[int, list[str]]:
     """List the records of an archive. Returns the exit code, and lines to print."""
     rows = [
         {
-            "category": record.category,
+            "category": shown_name(record.category),
             "id": record.identifier,
             "written_pages": len(record.written_pages()),
             "directions": list(record.directions),
@@ -103,7 +103,7 @@ def show(options: argparse.Namespace) -> tuple[int, list[str]]:
     ]
     damaged = sum(row["checksum"] == "wrong" for row in rows)
     if options.json:
-        about = {"file": options.archive, "ok": damaged == 0, "flash_bytes": FLASH_BYTES, "records": rows}
+        about = {"file": shown_name(options.archive), "ok": damaged == 0, "flash_bytes": FLASH_BYTES, "records": rows}
         return DAMAGED if damaged else 0, [json.dumps(about)]
     lines = [f"{options.archive}: {counted(len(rows), 'record')}, each of {PAGE_COUNT} pages of 256 bytes"]
     if rows:
@@ -131,7 +131,7 @@ def extract(options: argparse.Namespace) -> tuple[int, list[str]]:
     if not found:
         raise FlashError(f"{options.archive} has no record of {name}; pogosim flash show lists those it has")
     if len(found) > 1:
-        categories = ", ".join(record.category for record, _ in found)
+        categories = ", ".join(shown_name(record.category) for record, _ in found)
         raise FlashError(
             f"{options.archive} has robots #{options.robot} of several categories; add --category, one of {categories}"
         )
@@ -142,7 +142,12 @@ def extract(options: argparse.Namespace) -> tuple[int, list[str]]:
         partial.write_bytes(record.flash)
     pages = len(record.written_pages())
     if options.json:
-        about = {"file": options.output, "category": record.category, "id": record.identifier, "written_pages": pages}
+        about = {
+            "file": shown_name(options.output),
+            "category": shown_name(record.category),
+            "id": record.identifier,
+            "written_pages": pages,
+        }
         return 0, [json.dumps(about)]
     return 0, [f"{options.output}: {FLASH_BYTES} bytes, {counted(pages, 'page')} not blank"]
 
@@ -175,22 +180,25 @@ def make_there(output: Path, options: argparse.Namespace) -> tuple[int, list[str
         given.add(owner)
         memories[owner] = flash_of(file)
     for category, _ in memories:
-        if len(category.encode(errors="surrogateescape")) > LONGEST_CATEGORY:
+        try:
+            length = len(category.encode())
+        except UnicodeEncodeError:
+            name = shown_name(category)
+            raise FlashError(f"the category '{name}' is no text in UTF-8, as names in an archive are") from None
+        if length > LONGEST_CATEGORY:
             raise FlashError(
                 f"the category '{category[:20]}...' has a longer name than an archive can have: expected at most "
                 f"{LONGEST_CATEGORY} bytes"
             )
     records = [
         Record(category, identifier) if flash is None else Record(category, identifier, flash=flash)
-        for (category, identifier), flash in sorted(
-            memories.items(), key=lambda item: (item[0][0].encode(errors="surrogateescape"), item[0][1])
-        )
+        for (category, identifier), flash in sorted(memories.items(), key=lambda item: item[0])  # as their bytes are
     ]
     with partial_output(output) as partial, partial.open("wb") as file:
         write_archive(file, records)
     if options.json:
         listed = [{"category": record.category, "id": record.identifier} for record in records]
-        return 0, [json.dumps({"file": options.archive, "records": listed})]
+        return 0, [json.dumps({"file": shown_name(options.archive), "records": listed})]
     return 0, [f"{options.archive}: {counted(len(records), 'record')}"]
 
 
@@ -262,6 +270,11 @@ def flash_of(name: str) -> bytes:
     if len(data) > FLASH_BYTES:
         raise FlashError(f"{name} is longer than flash memory, which has {FLASH_BYTES} bytes")
     return data.ljust(FLASH_BYTES, b"\xff")
+
+
+def shown_name(name: str) -> str:
+    """Return a name with its bytes that are not UTF-8 as escape sequences, for JSON and messages."""
+    return "".join(f"\\x{ord(own) - 0xDC00:02x}" if "\udc80" <= own <= "\udcff" else own for own in name)
 
 
 def text_of(value: object) -> str:
