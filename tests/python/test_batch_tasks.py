@@ -326,17 +326,64 @@ def test_missing_runs_are_named(tmp_path: Path) -> None:
     assert merge(tmp_path, "tmp").errors == f"pogobatch merge: {said}, arena_file: 'disk'\n"
     report = json.loads(merge(tmp_path, "tmp", "-c", "many.yaml", "--json").output)
     missing = {"output": "results/result.feather", "logical_run": 1, "batch_choices": {"objects.robots.nb": 3}}
+    missing["combination_ordinal"] = 1
     assert (report["ok"], report["missing"]) == (True, [missing])
-    # The configuration tells of combinations and runs of which there are none.
+    # The configuration tells of combinations of which there are no runs; manifests, how many there are.
     shutil.rmtree(folder_of(tmp_path / "tmp", 0, 3))
     shutil.rmtree(folder_of(tmp_path / "tmp", 2, 3))
-    assert merge(tmp_path, "tmp").errors == ""
+    without = merge(tmp_path, "tmp").errors
+    assert without == "pogobatch merge: 3 of 6 runs are missing, the first: run 0 of combination 1\n"
     whole = merge(tmp_path, "tmp", "-c", "many.yaml").errors
     assert whole == "pogobatch merge: 3 of 6 runs are missing, the first: run 0, objects.robots.nb: 3\n"
     shutil.rmtree(folder_of(tmp_path / "tmp", 2, 2))
     last = merge(tmp_path, "tmp", "-c", "many.yaml").errors
     assert "4 of 6 runs are missing, the first: run 2 of results/result.feather, objects.robots.nb: 2" in last
     assert merge(tmp_path, "tmp", "-c", "many.yaml", "--append", into="more").errors == ""
+
+
+def test_runs_of_a_part_that_was_not_done_are_missing(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for part in range(4):
+        words = ("--seeds", "3:7", "--part", f"{part}/5", "-t", f"jobs/{part}")
+        assert subcommand(tmp_path, "run", *words).code == 0
+    # Run 4 of both combinations, of which no other run has the number.
+    said = "2 of 10 runs are missing, the first: run 4 of results/result.feather, objects.robots.nb: 2"
+    assert merge(tmp_path, "jobs", "-c", "many.yaml").errors == f"pogobatch merge: {said}\n"
+    assert merge(tmp_path, "jobs").errors == f"pogobatch merge: {said}, arena_file: 'disk'\n"
+    # Manifests of earlier versions do not say it.
+    for path in (tmp_path / "jobs").rglob("pogobatch_task.json"):
+        change(path.parent, batch_seeds=None, batch_combinations=None)
+    assert merge(tmp_path, "jobs", "-c", "many.yaml").errors == ""
+
+
+@pytest.mark.parametrize("then", [("1:4", [2, 3]), ("0:4", [2, 3, 4])])
+def test_parts_of_batches_that_share_runs_miss_nothing(then: tuple[str, list[int]], tmp_path: Path) -> None:
+    for seeds, numbers in (("0:2", [2, 3]), then):
+        write_options(tmp_path, {"objects.robots.nb": {"batch_options": numbers}})
+        for part in ("0/2", "1/2"):
+            assert subcommand(tmp_path, "run", "--seeds", seeds, "--part", part, "-t", "jobs").code == 0
+    assert merge(tmp_path, "jobs", "-c", "many.yaml").errors == ""
+    assert merge(tmp_path, "jobs").errors == ""
+
+
+def test_runs_with_replaced_seeds_are_there(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    program = script(tmp_path / "fails", '[ "$seed" = 4 ] && exit 4')
+    for part in range(2):
+        words = ("--seeds", "3:6", "--part", f"{part}/2", "-t", f"jobs/{part}")
+        assert subcommand(tmp_path, "run", *words, program=program).code == 0
+    assert {manifest_of(path.parent)["seed"] for path in tmp_path.rglob("pogobatch_task.json")} == {3, 5, 6, 8}
+    assert merge(tmp_path, "jobs", "-c", "many.yaml").errors == ""
+
+
+@pytest.mark.parametrize("seeds", [3, "", "3", "0:99999999999"])
+def test_manifest_with_seeds_of_a_batch_that_are_none_is_refused(seeds: object, tmp_path: Path) -> None:
+    write_options(tmp_path)
+    assert task(tmp_path, 4).code == 0
+    change(tmp_path / "tasks" / "4", batch_seeds=seeds)
+    result = merge(tmp_path, "tasks")
+    assert (result.code, result.errors.count("\n")) == (2, 1)
+    assert "pogobatch_task.json: batch_seeds: expected " in result.errors
 
 
 def test_missing_runs_of_one_of_two_batches_with_other_seeds_are_named(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import logging
 import operator
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import PurePath
 from typing import Any
@@ -32,11 +32,12 @@ log = logging.getLogger("pogobatch")
 
 @dataclass(frozen=True)
 class MissingRun:
-    """A run that is not there, although others of its number, or of its combination, are."""
+    """A run that is not there, although others of its number, of its combination or of its batch are."""
 
     output: str
     logical_run: int
     batch_choices: Mapping[str, Any]  # what tells its combination from others
+    combination_ordinal: int | None = None  # number of its combination, from 0 on; None: its manifests do not say it
 
 
 class Expected:
@@ -151,7 +152,7 @@ def warn_of_programs(artifacts: Sequence[TaskArtifact]) -> None:
 
 def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier: Earlier | None) -> None:
     """Warn of runs in a file of results that differ in keys which no column has."""
-    firsts = [first for first, _ in by_combination(runs)]
+    firsts = [own[0] for own in by_combination(runs)]
     keys: dict[str, None] = {}
     for columns in dict.fromkeys(run.columns_text for run in firsts):
         alike = [configuration_in(run.file.metadata) for run in firsts if run.columns_text == columns]
@@ -166,11 +167,11 @@ def warn_of_indistinguishable(output: str, runs: Sequence[TaskArtifact], earlier
         log.warning("%s: no column tells apart its runs, which differ in %s", output, ", ".join(keys))
 
 
-def by_combination(artifacts: Sequence[TaskArtifact]) -> list[tuple[TaskArtifact, list[int]]]:
-    """Return the numbers of the runs of each combination, with one of these runs."""
-    found: dict[tuple[str, ...], tuple[TaskArtifact, list[int]]] = {}
+def by_combination(artifacts: Sequence[TaskArtifact]) -> list[list[TaskArtifact]]:
+    """Return the runs of each combination."""
+    found: dict[tuple[str, ...], list[TaskArtifact]] = {}
     for artifact in artifacts:
-        found.setdefault(artifact.combination, (artifact, []))[1].append(int(artifact.manifest["logical_run"]))
+        found.setdefault(artifact.combination, []).append(artifact)
     return list(found.values())
 
 
@@ -180,48 +181,78 @@ def missing_runs(
     """Return the runs that are missing, and how many there should be.
 
     Each combination should have the same runs as all others together, one number several times if batches with other
-    seeds are merged. With a configuration, each of its combinations
-    should have the runs 0, 1, ... up to the greatest number that there is, or as many as `_rundr` in it says.
+    seeds are merged, and all seeds of the batches that its runs are of. With a configuration, each of its combinations
+    should have the runs 0, 1, ... up to the greatest number that there is, or as many as `_rundr` in it says. Without
+    one, there should be as many combinations as the greatest of the batches has.
 
     Args:
         by_output: The runs that are there, by file of results.
         expected: What the configuration says; None: there is none.
     """
-    runs_of: dict[Any, Counter[int]] = {}
-    named: dict[Any, tuple[str, dict[str, Any]]] = {}
+    found: dict[Any, list[TaskArtifact]] = {}
+    named: dict[Any, MissingRun] = {}  # run 0 of each combination
     for output, artifacts in by_output.items():
-        for first, runs in by_combination(artifacts):
-            which: Any = first.combination if expected is None else expected.number_of(first)
+        for own in by_combination(artifacts):
+            which: Any = own[0].combination if expected is None else expected.number_of(own[0])
             if which is None:
                 continue
-            runs_of.setdefault(which, Counter()).update(runs)
-            named[which] = (output, first.columns if expected is None else expected.choices_of(which))
-    if not runs_of:
+            ordinal = own[0].manifest.get("combination_ordinal") if expected is None else which
+            choices = own[0].columns if expected is None else expected.choices_of(which)
+            named[which] = MissingRun(output, 0, for_json(choices), ordinal)
+            found.setdefault(which, []).extend(own)
+    if not found:
         return [], 0
-    wanted = functools.reduce(operator.or_, runs_of.values())
-    combinations = list(runs_of)
+    runs_of = {which: Counter(int(run.manifest["logical_run"]) for run in own) for which, own in found.items()}
+    wanted = functools.reduce(operator.or_, (runs + seeds_left(found[which]) for which, runs in runs_of.items()))
     if expected is not None:
         wanted = wanted | Counter(range(max(max(wanted) + 1, len(expected.configuration.seeds or ()))))
-        combinations = list(range(len(expected.combinations)))
+        for which in range(len(expected.combinations)):
+            named.setdefault(which, MissingRun("", 0, for_json(expected.choices_of(which)), which))
+        named = dict(sorted(named.items()))
+    else:
+        others = combinations_left([run for runs in found.values() for run in runs], len(found))
+        named |= {ordinal: MissingRun("", 0, {}, ordinal) for ordinal in others}
     missing = []
-    for which in combinations:
-        output, choices = named.get(which) or ("", expected.choices_of(which) if expected is not None else {})
+    for which, first in named.items():
         left = wanted - runs_of.get(which, Counter())
-        missing += [MissingRun(output, run, for_json(choices)) for run in sorted(left.elements())]
-    return missing, len(combinations) * wanted.total()
+        missing += [replace(first, logical_run=run) for run in sorted(left.elements())]
+    return missing, len(named) * wanted.total()
+
+
+def seeds_left(artifacts: Sequence[TaskArtifact]) -> Counter[int]:
+    """Return the numbers of those runs of a combination whose seeds its batches have, but no run that is there has."""
+    there = {artifact.first_seed for artifact in artifacts}
+    runs: dict[int, int] = {}
+    for seeds in dict.fromkeys(artifact.batch_seeds for artifact in artifacts):
+        runs.update({seed: run for run, seed in enumerate(seeds) if seed not in there})
+    return Counter(runs.values())
+
+
+def combinations_left(artifacts: Sequence[TaskArtifact], found: int) -> list[int]:
+    """Return the numbers of combinations that none of these runs has, although their batch has more than are found.
+
+    The greatest batch counts: a smaller one may have shared its runs with it.
+    """
+    count = max(artifact.manifest.get("batch_combinations") or 0 for artifact in artifacts)
+    of_greatest = (run.manifest for run in artifacts if run.manifest.get("batch_combinations") == count)
+    there = {manifest.get("combination_ordinal") for manifest in of_greatest}
+    return [ordinal for ordinal in range(count) if ordinal not in there][: max(0, count - found)]
 
 
 def warn_of_missing(missing: Sequence[MissingRun], count: int) -> None:
     """Warn of runs that are not there, of so many that there should be."""
     if missing:
         first = missing[0]
+        of = f" of {first.output}" if first.output else ""
         choices = "".join(f", {key}: {shown(value)}" for key, value in first.batch_choices.items())
+        if not of and not choices:
+            of = f" of combination {first.combination_ordinal}"
         log.warning(
             "%d of %s %s missing, the first: run %d%s%s",
             len(missing),
             counted(count, "run"),
             "is" if len(missing) == 1 else "are",
             first.logical_run,
-            f" of {first.output}" if first.output else "",
+            of,
             choices,
         )

@@ -14,7 +14,7 @@ from typing import Any
 
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, cannot
-from pogosim.batch.manifests import TASK, task_entries, write_json
+from pogosim.batch.manifests import TASK, batch_entries, task_entries, write_json
 from pogosim.batch.option_words import chosen_in
 from pogosim.batch.parts import PLAIN, Format
 from pogosim.batch.places import in_the_users_file
@@ -191,6 +191,7 @@ class Execution:
             done = replace(task, run=own.run)  # whose outputs may have other names than those of `own`
             choices = chosen_in(self.varied, number)
             entries = task_entries(self.combinations[number], done, replacement, number, choices)
+            entries |= batch_entries(self.combinations[number], len(self.combinations))
             place = first
             if number != self.first_of(task.key):
                 place = first.with_name(f"{first.name}_as_{number}")

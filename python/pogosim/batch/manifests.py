@@ -15,7 +15,7 @@ from pogosim.arguments import is_text
 from pogosim.batch.errors import BatchError, cannot, check_is_file, given, is_whole, one_line
 from pogosim.batch.option_words import shown
 from pogosim.batch.run import FRAMES, Task
-from pogosim.batch.seeds import LARGEST
+from pogosim.batch.seeds import LARGEST, seeds_between
 from pogosim.batch.tasks import Combination
 from pogosim.outputs import OutputError, partial_output, real_output
 from pogosim.yaml_1_2 import plain
@@ -32,6 +32,7 @@ MOST = 2**63 - 1
 KNOWN = {
     **{"seed": LARGEST, "logical_run": MOST, "result_filename": None, "data_file": None},
     **{"retry_attempt": MOST, "combination_ordinal": MOST, "config_hash": None, "program_hash": None},
+    **{"batch_combinations": MOST, "batch_seeds": None},
 }
 NEEDED = list(KNOWN)[:4]
 
@@ -75,6 +76,17 @@ def task_entries(
         "program_hash": hashlib.sha256(task.settings.program_digest.encode()).hexdigest()[:16],
         "pogosim_version": pogosim.__version__,
     }
+
+
+def batch_entries(combination: Combination, combinations: int) -> dict[str, Any]:
+    """Return what `pogobatch_task.json` also says of the batch that a run is of, so that a merge knows what is missing.
+
+    Args:
+        combination: The combination of options that the run belongs to.
+        combinations: How many the batch has.
+    """
+    seeds = {"batch_seeds": combination.seeds} if combination.seeds else {}
+    return {"batch_combinations": combinations, **seeds}
 
 
 def write_json(path: Path, entries: Mapping[str, Any]) -> Path:
@@ -127,6 +139,8 @@ def read_manifest(path: Path) -> dict[str, Any]:
             raise BatchError(f"{path}: {name}: expected a text, found {shown(value)}")
         if most is not None and not (is_whole(value) and 0 <= value <= most):
             raise BatchError(f"{path}: {name}: expected a whole number from 0 to {most}, found {shown(value)}")
+    if (seeds := entries.get("batch_seeds")) is not None:
+        seeds_between(seeds, f"{path}: batch_seeds")
     columns = entries.get("extra_columns", {})
     if not isinstance(columns, dict):
         raise BatchError(f"{path}: extra_columns: expected a map, found {shown(columns)}")

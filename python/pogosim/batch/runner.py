@@ -24,7 +24,7 @@ from pogosim.batch.reports import Failure, Replaced, report_failures, report_rep
 from pogosim.batch.results import check_output
 from pogosim.batch.run import QUIET, RunSettings, Task
 from pogosim.batch.saved_runs import states_in
-from pogosim.batch.seeds import listed_seeds
+from pogosim.batch.seeds import listed_seeds, range_text
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
@@ -438,4 +438,5 @@ class PogobotBatchRunner:
         columns = {name: value for name, value in columns.items() if name not in self.layout.run_columns}
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
         name = os.path.relpath(output, self.output_dir)
-        return Combination(output, columns, entries, tasks_of(entries, seeds, self.run_settings, self.digests), name)
+        tasks = tasks_of(entries, seeds, self.run_settings, self.digests)
+        return Combination(output, columns, entries, tasks, name, range_text(seeds))

@@ -43,6 +43,12 @@ def seeds_up_to(count: int, name: str) -> range:
     return checked(range(count), name)
 
 
+def range_text(seeds: Sequence[int]) -> str:
+    """Return "A:B" for the seeds A, A + 1, ..., B; empty if they are others."""
+    first = seeds[0] if seeds else 0
+    return f"{first}:{seeds[-1]}" if seeds and all(seed == first + i for i, seed in enumerate(seeds)) else ""
+
+
 def checked(seeds: range, name: str) -> range:
     """Return seeds of one batch, unless they are too many."""
     if len(seeds) > MOST:

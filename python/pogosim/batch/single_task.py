@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +24,7 @@ from pogosim.batch.run import FRAMES, Outcome, RunSettings, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.run_log import EFFECTIVE, with_last_line
 from pogosim.batch.saved_runs import SavedRun, check_period, held
-from pogosim.batch.seeds import listed_seeds
+from pogosim.batch.seeds import listed_seeds, seeds_between
 from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
@@ -63,6 +63,18 @@ class TaskArtifact:
     def columns_text(self) -> str:
         """The constant columns as a text, which is the same for the same columns."""
         return columns_as_text(self.columns)
+
+    @cached_property
+    def batch_seeds(self) -> Sequence[int]:
+        """The seeds of all runs of its combination in its batch; empty: its manifest does not say it."""
+        text = self.manifest.get("batch_seeds")
+        return seeds_between(text, "batch_seeds") if text else ()
+
+    @property
+    def first_seed(self) -> int:
+        """The seed of its first attempt."""
+        run = self.manifest["logical_run"]
+        return self.batch_seeds[run] if run < len(self.batch_seeds) else int(self.manifest[SEED])
 
     @cached_property
     def combination(self) -> tuple[str, ...]:

@@ -27,6 +27,7 @@ class Combination:
     entries: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
     name: str = ""  # of the output, in the folder of the results
+    seeds: str = ""  # "A:B" of all its runs, also those that are left to other parts of a batch; empty: no such range
 
     @cached_property
     def config_hash(self) -> str:
