@@ -167,6 +167,26 @@ def test_greatest_number_of_a_run_can_be_merged(tmp_path: Path) -> None:
     assert set(load_dataframe(tmp_path / "results" / name)[0]["run"]) == {MOST}
 
 
+def test_columns_of_a_manifest_that_say_which_run_it_is_are_left_out_with_a_warning(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    for seed in (7, 8):
+        assert task(tmp_path, seed, "--run-index", str(seed)).code == 0
+    assert merge(tmp_path, "tasks").errors == ""
+    expected = results(tmp_path)
+    own = manifest_of(tmp_path / "tasks" / "7")["extra_columns"]
+    change(tmp_path / "tasks" / "7", extra_columns={**own, "run": 7, "seed": 7, "retry_attempt": 0})
+    assert merge(tmp_path, "tasks").errors == ""  # nothing is lost
+    change(tmp_path / "tasks" / "7", extra_columns={**own, "run": "a", "seed": 8})
+    change(tmp_path / "tasks" / "8", extra_columns={**own, "retry_attempt": 5})
+    merged = merge(tmp_path, "tasks")
+    assert (merged.code, merged.errors.count("\n")) == (0, 1)
+    assert merged.errors.endswith(
+        "tasks/7/pogobatch_task.json: extra_columns: left out: run, seed, and those of 1 more manifest; columns of "
+        "results with these names say which run a row is of\n"
+    )
+    assert results(tmp_path) == expected
+
+
 def test_refused_value_is_named_with_the_line_of_the_user(tmp_path: Path) -> None:
     text = write_options(tmp_path, {"objects.robots.nb": "many"}).read_text()
     line = text.splitlines().index("    nb: many") + 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import logging
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -28,10 +29,13 @@ from pogosim.batch.result_metadata import COMBINATIONS, Earlier, columns_as_text
 from pogosim.batch.results import check_columns, check_output, write_results
 from pogosim.batch.run_data import RunFile, opened
 from pogosim.batch.single_task import TaskArtifact
+from pogosim.lines import counted
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RUN, SEED, run_numbers
 from pogosim.table_formats import FEATHER, format_of
 from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml
+
+log = logging.getLogger("pogobatch")
 
 
 def discover_task_artifacts(inputs: Iterable[PathLike]) -> list[TaskArtifact]:
@@ -115,6 +119,7 @@ def merge_runs(
     parts = {output: parts_of(own) for output, own in by_output.items()}
     earlier = {output: earlier_results(output, parts[output]) if append else None for output in by_output}
     parts = {output: numbered(own, earlier[output]) for output, own in parts.items()}
+    warn_of_lost_columns(artifacts)
     warn_of_programs(artifacts)
     if expected is not None:
         warn_of_others(artifacts, expected)
@@ -141,6 +146,18 @@ def refuse_same_runs(artifacts: Sequence[TaskArtifact]) -> None:
                 f"{before.folder} and {artifact.folder} have the same seed, {seed}, of one configuration{why}, which "
                 "would count twice; leave one out"
             )
+
+
+def warn_of_lost_columns(artifacts: Sequence[TaskArtifact]) -> None:
+    """Warn of constant columns that results cannot have, since columns of these names say which run a row is of."""
+    having = [artifact for artifact in artifacts if artifact.lost_columns]
+    if having:
+        log.warning(
+            "%s: extra_columns: left out: %s%s; columns of results with these names say which run a row is of",
+            having[0].folder / TASK,
+            ", ".join(having[0].lost_columns),
+            f", and those of {counted(len(having) - 1, 'more manifest')}" if len(having) > 1 else "",
+        )
 
 
 def output_of(artifact: TaskArtifact, folder: Path) -> str:

@@ -16,7 +16,7 @@ from pogosim.batch.identity import find_program, program_digest
 from pogosim.batch.manifests import MOST, TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import file_name, new_columns
 from pogosim.batch.option_words import CHOICES, shown
-from pogosim.batch.parts import WITH_SEEDS
+from pogosim.batch.parts import OF_CAMPAIGNS, WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns
@@ -29,7 +29,7 @@ from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
-from pogosim.run_columns import RETRY, SEED
+from pogosim.run_columns import RETRY, RUN, SEED
 from pogosim.table_metadata import parse_configuration
 
 log = logging.getLogger("pogobatch")
@@ -56,8 +56,16 @@ class TaskArtifact:
 
     @property
     def columns(self) -> dict[str, Any]:
-        """The constant columns of the run, without its seed."""
-        return {name: value for name, value in self.manifest.get("extra_columns", {}).items() if name != SEED}
+        """The constant columns of the run, without those that say which run it is."""
+        extra = self.manifest.get("extra_columns", {})
+        return {name: value for name, value in extra.items() if name not in OF_CAMPAIGNS.run_columns}
+
+    @property
+    def lost_columns(self) -> list[str]:
+        """Its constant columns that contradict those columns of results which say which run a row is of."""
+        extra, own = self.manifest.get("extra_columns", {}), self.manifest
+        there = {RUN: own["logical_run"], SEED: own[SEED], RETRY: own.get(RETRY) or 0}
+        return [name for name, value in there.items() if name in extra and extra[name] != value]
 
     @cached_property
     def columns_text(self) -> str:
