@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import contextlib
 import json
+import operator
 import os
+import random
 import shutil
 import signal
 import subprocess
 import sys
 import time
+import tracemalloc
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import pytest
 from batches import COMMAND, ENVIRONMENT, results, run_main, script, subcommand, write_options
+from pogosim.batch.completeness import less
+from pogosim.batch.run_counts import RunCounts, gaps
 from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
 from pogosim.utils import load_dataframe
 from pyarrow import feather
@@ -352,9 +358,9 @@ def test_missing_runs_are_named(tmp_path: Path) -> None:
     shutil.rmtree(folder_of(tmp_path / "tmp", 0, 3))
     shutil.rmtree(folder_of(tmp_path / "tmp", 2, 3))
     without = merge(tmp_path, "tmp").errors
-    assert without == "pogobatch merge: 3 of 6 runs are missing, the first: run 0 of combination 1\n"
+    assert without == "pogobatch merge: 3 of 6 runs are missing, the first: runs 0, 1, 2 of combination 1\n"
     whole = merge(tmp_path, "tmp", "-c", "many.yaml").errors
-    assert whole == "pogobatch merge: 3 of 6 runs are missing, the first: run 0, objects.robots.nb: 3\n"
+    assert whole == "pogobatch merge: 3 of 6 runs are missing, the first: runs 0, 1, 2, objects.robots.nb: 3\n"
     shutil.rmtree(folder_of(tmp_path / "tmp", 2, 2))
     last = merge(tmp_path, "tmp", "-c", "many.yaml").errors
     assert "4 of 6 runs are missing, the first: run 2 of results/result.feather, objects.robots.nb: 2" in last
@@ -415,6 +421,74 @@ def test_missing_runs_of_one_of_two_batches_with_other_seeds_are_named(tmp_path:
     result = merge(tmp_path, "0-1", "2-3", "-c", "many.yaml")
     said = "1 of 8 runs is missing, the first: run 1 of results/result.feather, objects.robots.nb: 3"
     assert (result.code, result.errors) == (0, f"pogobatch merge: {said}\n")
+
+
+@pytest.mark.parametrize(
+    ("entries", "count", "wanted"),
+    [
+        ({"logical_run": 2_000_000_000}, 2 * 2_000_000_001 - 2, 2 * 2_000_000_001),
+        ({"logical_run": MOST, "batch_seeds": "0:9999999"}, 2 * (MOST + 1) - 2, 2 * (MOST + 1)),
+    ],
+)
+def test_missing_runs_are_counted_however_many_they_are(
+    entries: dict[str, Any], count: int, wanted: int, tmp_path: Path
+) -> None:
+    kept(tmp_path, 1, "tmp")
+    change(folder_of(tmp_path / "tmp", 0, 2), **entries)
+    tracemalloc.start()
+    try:
+        merged = merge(tmp_path, "tmp", "-c", "many.yaml", "--json", into="merged")
+        assert tracemalloc.get_traced_memory()[1] < 2e7
+    finally:
+        tracemalloc.stop()
+    assert (merged.code, (tmp_path / "merged" / "result.feather").exists()) == (0, True)
+    said = (
+        f"{count} of {wanted} runs are missing, the first: runs 0, 1, 2 of merged/result.feather, objects.robots.nb: 2"
+    )
+    assert merged.errors.startswith(f"pogobatch merge: {said}\n")
+    report = json.loads(merged.output)
+    assert (report["missing_count"], len(report["missing"])) == (count, 1000)
+    assert [run["logical_run"] for run in report["missing"]] == list(range(1000))
+
+
+def test_combinations_without_runs_are_counted_however_many_they_are(tmp_path: Path) -> None:
+    kept(tmp_path, 1, "tmp")
+    change(folder_of(tmp_path / "tmp", 0, 2), batch_combinations=MOST)
+    report = json.loads(merge(tmp_path, "tmp", "--json").output)
+    assert (report["missing_count"], len(report["missing"])) == (MOST - 2, 1000)
+    assert report["missing"][0]["combination_ordinal"] == 1
+
+
+def test_results_are_there_even_if_missing_runs_cannot_be_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept(tmp_path, 1, "tmp")
+
+    def out_of_memory(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("pogosim.batch.merging.missing_runs", out_of_memory)
+    merged = merge(tmp_path, "tmp", "-c", "many.yaml", into="merged")
+    assert (merged.code, (tmp_path / "merged" / "result.feather").exists()) == (2, True)
+
+
+def test_counts_of_runs_are_those_of_counters() -> None:
+    draws = random.Random(5)
+    for _ in range(500):
+        a, b = ([draws.randrange(8) for _ in range(draws.randrange(12))] for _ in range(2))
+        first, second = (RunCounts.of((run, run + 1) for run in runs) for runs in (a, b))
+        for by, expected in (
+            (max, Counter(a) | Counter(b)),
+            (operator.add, Counter(a) + Counter(b)),
+            (less, Counter(a) - Counter(b)),
+        ):
+            found = first.joined(second, by)
+            assert list(found.numbers()) == sorted(expected.elements())
+            assert (found.total, found.end) == (expected.total(), max(expected, default=-1) + 1)
+            assert found == RunCounts.of((run, run + 1) for run in expected.elements())
+        taken = sorted((run, run + draws.randrange(1, 4)) for run in a)
+        left = set(range(2, 9)) - {run for start, end in taken for run in range(start, end)}
+        assert [run for start, end in gaps(range(2, 9), taken) for run in range(start, end)] == sorted(left)
 
 
 def test_configuration_that_is_written_in_another_way_is_the_same(tmp_path: Path) -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import logging
 import operator
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import PurePath
@@ -19,12 +19,15 @@ from pogosim.batch.manifests import for_json
 from pogosim.batch.names import file_name
 from pogosim.batch.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.result_metadata import Earlier, configuration_in
+from pogosim.batch.run_counts import RunCounts, gaps
 from pogosim.batch.run_files import ALL_OUTPUTS, is_file_beside
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.lines import counted
 from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters
 
 OF_VIEW = ("GUI", "progress_bar", "mm_to_pixels")  # which a run adds to its configuration
+LISTED = 1000  # runs that are missing, in JSON
+NAMED = 3  # of them, in the warning
 NOT_COMPARED = (*NO_PARAMETERS, *ALL_OUTPUTS, *OF_VIEW)
 
 log = logging.getLogger("pogobatch")
@@ -38,6 +41,21 @@ class MissingRun:
     logical_run: int
     batch_choices: Mapping[str, Any]  # what tells its combination from others
     combination_ordinal: int | None = None  # number of its combination, from 0 on; None: its manifests do not say it
+
+
+@dataclass(frozen=True)
+class MissingRuns:
+    """Runs that are not there.
+
+    Attributes:
+        first: The first ones of them, at most LISTED.
+        count: How many are missing.
+        wanted: How many there should be.
+    """
+
+    first: list[MissingRun]
+    count: int
+    wanted: int
 
 
 class Expected:
@@ -175,9 +193,7 @@ def by_combination(artifacts: Sequence[TaskArtifact]) -> list[list[TaskArtifact]
     return list(found.values())
 
 
-def missing_runs(
-    by_output: Mapping[str, Sequence[TaskArtifact]], expected: Expected | None
-) -> tuple[list[MissingRun], int]:
+def missing_runs(by_output: Mapping[str, Sequence[TaskArtifact]], expected: Expected | None) -> MissingRuns:
     """Return the runs that are missing, and how many there should be.
 
     Each combination should have the same runs as all others together, one number several times if batches with other
@@ -201,58 +217,85 @@ def missing_runs(
             named[which] = MissingRun(output, 0, for_json(choices), ordinal)
             found.setdefault(which, []).extend(own)
     if not found:
-        return [], 0
-    runs_of = {which: Counter(int(run.manifest["logical_run"]) for run in own) for which, own in found.items()}
-    wanted = functools.reduce(operator.or_, (runs + seeds_left(found[which]) for which, runs in runs_of.items()))
+        return MissingRuns([], 0, 0)
+    runs_of = {which: RunCounts.of(map(as_range, own)) for which, own in found.items()}
+    with_left = (runs.joined(seeds_left(found[which]), operator.add) for which, runs in runs_of.items())
+    wanted = functools.reduce(lambda some, more: some.joined(more, max), with_left)
+    others = 0
+    names_of_others: Iterator[int] = iter(())
     if expected is not None:
-        wanted = wanted | Counter(range(max(max(wanted) + 1, len(expected.configuration.seeds or ()))))
+        end = max(wanted.end, len(expected.configuration.seeds or ()))
+        wanted = wanted.joined(RunCounts.of([(0, end)]), max)
         for which in range(len(expected.combinations)):
             named.setdefault(which, MissingRun("", 0, for_json(expected.choices_of(which)), which))
         named = dict(sorted(named.items()))
     else:
-        others = combinations_left([run for runs in found.values() for run in runs], len(found))
-        named |= {ordinal: MissingRun("", 0, {}, ordinal) for ordinal in others}
-    missing = []
-    for which, first in named.items():
-        left = wanted - runs_of.get(which, Counter())
-        missing += [replace(first, logical_run=run) for run in sorted(left.elements())]
-    return missing, len(named) * wanted.total()
+        others, names_of_others = combinations_left([run for runs in found.values() for run in runs], len(found))
+    left = [(name, wanted.joined(runs_of.get(which, RunCounts()), less)) for which, name in named.items()]
+    without_runs = ((MissingRun("", 0, {}, ordinal), wanted) for ordinal in names_of_others)
+    runs = (
+        replace(name, logical_run=run)
+        for name, counts in itertools.chain(left, without_runs)
+        for run in counts.numbers()
+    )
+    count = sum(counts.total for _, counts in left) + others * wanted.total
+    return MissingRuns(list(itertools.islice(runs, LISTED)), count, (len(named) + others) * wanted.total)
 
 
-def seeds_left(artifacts: Sequence[TaskArtifact]) -> Counter[int]:
-    """Return the numbers of those runs of a combination whose seeds its batches have, but no run that is there has."""
-    there = {artifact.first_seed for artifact in artifacts}
-    runs: dict[int, int] = {}
-    for seeds in dict.fromkeys(artifact.batch_seeds for artifact in artifacts):
-        runs.update({seed: run for run, seed in enumerate(seeds) if seed not in there})
-    return Counter(runs.values())
+def as_range(artifact: TaskArtifact) -> tuple[int, int]:
+    """Return the number of a run, as a range of one number."""
+    run = int(artifact.manifest["logical_run"])
+    return run, run + 1
 
 
-def combinations_left(artifacts: Sequence[TaskArtifact], found: int) -> list[int]:
-    """Return the numbers of combinations that none of these runs has, although their batch has more than are found.
+def less(count: int, other: int) -> int:
+    """Return what is left of a count without another one."""
+    return max(0, count - other)
+
+
+def seeds_left(artifacts: Sequence[TaskArtifact]) -> RunCounts:
+    """Return the numbers of those runs of a combination whose seeds its batches have, but no run that is there has.
+
+    A seed of several batches counts once, for the last one.
+    """
+    taken = [(seed, seed + 1) for seed in {artifact.first_seed for artifact in artifacts}]
+    runs: list[tuple[int, int]] = []
+    for seeds in reversed(dict.fromkeys(artifact.batch_seeds for artifact in artifacts)):
+        runs += [(first - seeds.start, end - seeds.start) for first, end in gaps(seeds, sorted(taken))]
+        taken.append((seeds.start, seeds.stop))
+    return RunCounts.of(runs)
+
+
+def combinations_left(artifacts: Sequence[TaskArtifact], found: int) -> tuple[int, Iterator[int]]:
+    """Return how many combinations none of these runs has, although their batch has more than are found, and which.
 
     The greatest batch counts: a smaller one may have shared its runs with it.
     """
     count = max(artifact.manifest.get("batch_combinations") or 0 for artifact in artifacts)
     of_greatest = (run.manifest for run in artifacts if run.manifest.get("batch_combinations") == count)
-    there = {manifest.get("combination_ordinal") for manifest in of_greatest}
-    return [ordinal for ordinal in range(count) if ordinal not in there][: max(0, count - found)]
+    ordinals = (manifest.get("combination_ordinal") for manifest in of_greatest)
+    there = {ordinal for ordinal in ordinals if ordinal is not None and ordinal < count}
+    left = min(count - len(there), max(0, count - found))
+    return left, itertools.islice((ordinal for ordinal in itertools.count() if ordinal not in there), left)
 
 
-def warn_of_missing(missing: Sequence[MissingRun], count: int) -> None:
-    """Warn of runs that are not there, of so many that there should be."""
-    if missing:
-        first = missing[0]
+def warn_of_missing(missing: MissingRuns) -> None:
+    """Warn of runs that are not there."""
+    if missing.first:
+        first = missing.first[0]
         of = f" of {first.output}" if first.output else ""
         choices = "".join(f", {key}: {shown(value)}" for key, value in first.batch_choices.items())
         if not of and not choices:
             of = f" of combination {first.combination_ordinal}"
+        alike = (run for run in missing.first[:NAMED] if replace(run, logical_run=first.logical_run) == first)
+        together = [run.logical_run for run in alike]
         log.warning(
-            "%d of %s %s missing, the first: run %d%s%s",
-            len(missing),
-            counted(count, "run"),
-            "is" if len(missing) == 1 else "are",
-            first.logical_run,
+            "%d of %s %s missing, the first: %s %s%s%s",
+            missing.count,
+            counted(missing.wanted, "run"),
+            "is" if missing.count == 1 else "are",
+            "run" if len(together) == 1 else "runs",
+            ", ".join(map(str, together)),
             of,
             choices,
         )

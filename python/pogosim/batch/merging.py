@@ -13,7 +13,7 @@ from pyarrow import ipc
 
 from pogosim.batch.completeness import (
     Expected,
-    MissingRun,
+    MissingRuns,
     missing_runs,
     warn_of_indistinguishable,
     warn_of_missing,
@@ -99,7 +99,7 @@ class Merged(NamedTuple):
     """What a merge has done."""
 
     outputs: list[str]  # paths of the files of results
-    missing: list[MissingRun]  # runs that are not there although others are; none are looked for with `append`
+    missing: MissingRuns  # runs that are not there although others are; none are looked for with `append`
 
 
 def merge_runs(
@@ -123,13 +123,14 @@ def merge_runs(
     warn_of_programs(artifacts)
     if expected is not None:
         warn_of_others(artifacts, expected)
-    missing, count = ([], 0) if append else missing_runs(by_output, expected)
-    warn_of_missing(missing, count)
     for output, own in by_output.items():
         warn_of_indistinguishable(output, own, earlier[output])
     for output, own in by_output.items():
         own_text = own[0].configuration_text if expected is None else expected.configuration.text
         write_results(output, parts[output], own_text, OF_CAMPAIGNS, earlier[output])
+    # The results are there whatever is found now.
+    missing = MissingRuns([], 0, 0) if append else missing_runs(by_output, expected)
+    warn_of_missing(missing)
     return Merged(list(by_output), missing)
 
 

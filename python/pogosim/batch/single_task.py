@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -73,10 +73,10 @@ class TaskArtifact:
         return columns_as_text(self.columns)
 
     @cached_property
-    def batch_seeds(self) -> Sequence[int]:
+    def batch_seeds(self) -> range:
         """The seeds of all runs of its combination in its batch; empty: its manifest does not say it."""
         text = self.manifest.get("batch_seeds")
-        return seeds_between(text, "batch_seeds") if text else ()
+        return seeds_between(text, "batch_seeds") if text else range(0)
 
     @property
     def first_seed(self) -> int:

@@ -291,7 +291,8 @@ def merge(arguments: argparse.Namespace) -> Report:
         "inputs": arguments.inputs,
         "task_count": len(artifacts),
         "outputs": outputs,
-        "missing": [asdict(run) for run in missing],
+        "missing": [asdict(run) for run in missing.first],
+        "missing_count": missing.count,
     }
 
 
