@@ -6,6 +6,7 @@ import os
 import pty
 import re
 import shlex
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -80,6 +81,17 @@ def test_program_that_is_no_simulator_is_refused_before_anything_is_touched(tmp_
     ):
         assert what in one_line(tmp_path, program=program)
         assert list(results(tmp_path)) == ["result.feather"]
+
+
+def test_shared_object_is_refused_with_the_program_beside_it(tmp_path: Path) -> None:
+    write_options(tmp_path)
+    program = example("helloworld")
+    library = program.with_name("helloworld.so")
+    line = one_line(tmp_path, program=library)
+    assert f"{library} is a shared object, for Python; give the program beside it, {program}" in line
+    alone = Path(shutil.copy(library, tmp_path / "alone.so"))
+    line = one_line(tmp_path, program=alone)
+    assert f"{alone} is a shared object, for Python; expected a program compiled for Pogosim" in line
 
 
 def test_program_that_writes_no_data_ends_the_batch_at_once(tmp_path: Path) -> None:

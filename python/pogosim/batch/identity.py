@@ -27,6 +27,7 @@ LIBRARY = re.compile(r"^\s*(?:\S+ => )?(/\S*libpogosim[^/\s]*)", re.MULTILINE)
 MODULES = "libpogosim_tables*"  # that the library loads when it writes rows
 
 PYTHON = ".py"  # how the names of files end that Python runs
+SHARED_OBJECTS = (".so", ".dylib")  # with which pogosim.Simulation runs a program in the process of Python
 
 # Every program of the simulator mentions its library, or contains it.
 MARK = b"pogosim"
@@ -56,6 +57,10 @@ def find_program(name: str) -> Path:
     is_script = content.startswith(b"#!") or path.suffix == PYTHON
     if not is_script and not is_of_simulator(content):
         raise BatchError(f"{name} is not a simulator; {expected}")
+    if not is_script and path.suffix in SHARED_OBJECTS:
+        program = Path(name).with_suffix("")
+        beside = f"give the program beside it, {program}" if program.is_file() else expected
+        raise BatchError(f"{name} is a shared object, for Python; {beside}")
     if path.suffix != PYTHON and shutil.which(str(path.absolute())) is None:
         raise BatchError(f"the simulator {name} is not executable; chmod +x {name}")
     return path.absolute()
