@@ -1,11 +1,17 @@
 #include "config/scenario_keys.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "base/log.hpp"
 #include "config/shape_keys.hpp"
 #include "physics/physics_engine.hpp"
 
@@ -277,6 +283,44 @@ std::span<Key<ViewConfig> const> view_keys() {
 }
 
 /// The stack of so many bytes, or the least that every machine can give.
+/// True if a category has a formation of its own, which reads the keys of formations, too.
+bool has_own_formation(MapReader const& reader) {
+    Node const* const objects = reader.find("objects");
+    return objects != nullptr && std::ranges::any_of(objects->entries, [](Node::Entry const& entry) {
+               return entry.value.find("initial_formation") != nullptr;
+           });
+}
+
+/// Warns of keys of one formation if initial_formation does not ask for any.
+void warn_without_formation(MapReader const& reader, FormationSpec const& formation) {
+    struct Group {
+        std::string_view formation;
+        std::initializer_list<std::string_view> keys;
+    };
+    static std::array<Group, 4> const groups{{
+        {kImportedFormation,
+         {"formation_filename", "formation_time", "imported_formation_min_coords", "imported_formation_max_coords"}},
+        {"chessboard", {"chessboard_distance_between_neighbors", "formation_cluster_at_center"}},
+        {"lattice", {"lattice_kind", "lattice_distance_between_neighbors"}},
+        {"random", {"formation_max_space_between_neighbors"}},
+    }};
+    if (reader.find("initial_formation") != nullptr) {
+        return;
+    }
+    for (Group const& group : groups) {
+        std::vector<std::string_view> given;
+        std::ranges::copy_if(group.keys, std::back_inserter(given),
+                             [&](std::string_view key) { return reader.find(key) != nullptr; });
+        // No category can be imported on its own.
+        if (!given.empty() && (group.formation == kImportedFormation || !has_own_formation(reader))) {
+            log().warn("{}: {} no effect with initial_formation {}, the default; set initial_formation to {}",
+                       reader.find(given.front())->where(),
+                       fmt::format("{} {}", fmt::join(given, ", "), given.size() == 1 ? "has" : "have"), formation.name,
+                       group.formation);
+        }
+    }
+}
+
 int stack_kib(std::int64_t bytes) {
     return static_cast<int>(std::max<std::int64_t>((bytes + 1023) / 1024, kLeastStackKib));
 }
@@ -296,6 +340,7 @@ void read_top_level(MapReader& reader, Scenario& scenario) {
         reader.read_unused(wall_keys(), scenario.walls);
     }
     reader.read(formation_keys(), scenario.formation);
+    warn_without_formation(reader, scenario.formation);
     reader.collect([&] { scenario.magnetometer = read_magnetometer(reader); });
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);

@@ -1,6 +1,7 @@
 // Keys that mean nothing in the mode that a configuration chose: any value of their type is accepted there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -157,4 +158,27 @@ TEST(UnusedKey, CoordinateOfAnOrbitThatStandsAloneWarns) {
     EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    x: 3\n    y: 4\n"),
               "x.yaml:6: objects.it.center_x: center_x without center_y; center_y is 4. Specify both\n");
     EXPECT_EQ(warnings_of_lamp("orbiting_static_light", orbit + "    center_y: 7\n    x: 3\n"), "");
+}
+
+TEST(UnusedKey, KeysOfOneFormationWithoutAnInitialFormationWarn) {
+    auto const warnings_of = [](std::string const& keys) {
+        Warnings const warnings;
+        load(kRobots + keys);
+        return warnings.text();
+    };
+    std::string const rest = " no effect with initial_formation power_lloyd, the default; set initial_formation to ";
+    std::string const line = "x.yaml:" + std::to_string(1 + std::ranges::count(kRobots, '\n')) + ": ";
+    EXPECT_EQ(warnings_of("formation_filename: f.csv\n"), line + "formation_filename has" + rest + "imported\n");
+    EXPECT_EQ(warnings_of("formation_filename: f.csv\nformation_time: last\n"),
+              line + "formation_filename, formation_time have" + rest + "imported\n");
+    EXPECT_EQ(warnings_of("chessboard_distance_between_neighbors: 70\n"),
+              line + "chessboard_distance_between_neighbors has" + rest + "chessboard\n");
+    EXPECT_EQ(warnings_of("lattice_kind: square\n"), line + "lattice_kind has" + rest + "lattice\n");
+    EXPECT_EQ(warnings_of("formation_max_space_between_neighbors: 90\n"),
+              line + "formation_max_space_between_neighbors has" + rest + "random\n");
+    // A configuration that names its formation may keep the keys of others, and categories may have their own.
+    EXPECT_EQ(warnings_of("initial_formation: random\nformation_filename: f.csv\nlattice_kind: square\n"), "");
+    Warnings const warnings;
+    load("lattice_kind: square\nobjects:\n  robots: {type: pogobot, initial_formation: lattice}\n");
+    EXPECT_EQ(warnings.text(), "");
 }
