@@ -144,26 +144,29 @@ def as_markdown(rows: pd.DataFrame) -> str:
 
 
 def draw(rows: pd.DataFrame, path: Path) -> None:
-    """Draw what a run costs, as bars."""
-    most = rows[rows["workers"] == rows["workers"].max()]
+    """Draw what a run costs with the most workers, as dots: a logarithmic axis has no zero for bars to begin at."""
+    workers = rows["workers"].max()
+    most = rows[rows["workers"] == workers]
     names = [f"{row.robots:.0f} robots,\n{row.simulated_s:g} s" for row in most.itertuples()]
     figure, axes = plt.subplots(figsize=(8, 4), layout="constrained")
     parts = (
-        ("simulation_ms", "simulation with its reset"),
-        ("run_ms", "run of a batch"),
-        ("isolated_ms", "in a process each"),
+        ("simulation_ms", "simulation with its reset", "o"),
+        ("run_ms", "run of a batch", "s"),
+        ("isolated_ms", "in a process each", "D"),
     )
-    for number, (column, label) in enumerate(parts):
-        places = [place + (number - 1) * 0.27 for place in range(len(most))]
-        bars = axes.bar(places, most[column], 0.25, label=label)
-        axes.bar_label(bars, fmt="%.3g", fontsize="small")
+    for number, (column, label, marker) in enumerate(parts):
+        places = [place + (number - 1) * 0.2 for place in range(len(most))]
+        axes.plot(places, most[column], marker, markersize=8, label=label)
+        for place, value in zip(places, most[column], strict=True):
+            axes.annotate(f"{value:.3g}", (place, value), (0, 7), textcoords="offset points", ha="center", size="small")
     axes.set_xticks(range(len(most)), names)
     axes.set(yscale="log", ylabel="processor time per run, ms")
     axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.grid(axis="y", color="0.9")
     axes.margins(y=0.15)
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", title=f"{workers:.0f} worker{'' if workers == 1 else 's'}")
     figure.savefig(path, dpi=120)
 
 

@@ -455,7 +455,7 @@ def versions(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Settings, 
         square = (ROOT / "arenas" / "square.csv").read_bytes()
         return {"arena_file": "a.csv"}, "a.csv", square, (ROOT / "arenas" / "disk.csv").read_bytes()
     if kind == "links":
-        settings = {"links.rods": {"type": "rod", "between": ["robots"], "topology": "list", "file": "l.csv"}}
+        settings: Settings = {"links.rods": {"type": "rod", "between": ["robots"], "topology": "list", "file": "l.csv"}}
         return settings, "l.csv", b"a,b\n0,1\n", b"a,b\n1,2\n"
     table = (ROOT / "conf" / "example_magnetometer_reference.csv").read_bytes()
     rows = table.splitlines(keepends=True)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 
 from pogosim.analysis.arena import Arena
 from pogosim.analysis.coverage import coverage_over_time
@@ -21,8 +22,8 @@ from pogosim.fonts import literal
 from pogosim.geometry.arena_file import ArenaError
 from pogosim.geometry.configured import arena_of, read_entries
 from pogosim.reports.each_run import for_each_run
-from pogosim.reports.figures import draw_bands, draw_over_time, new_figure, save, save_over_time
-from pogosim.reports.groups import by_arena, by_combination, group_names, group_of
+from pogosim.reports.figures import draw_bands, draw_over_time, drawn_by_combination, from_zero, save, save_over_time
+from pogosim.reports.groups import by_arena, group_names, group_of
 from pogosim.reports.options import open_runs, output_folder, write_table
 from pogosim.reports.voronoi_diagram import draw_diagrams
 from pogosim.scene import read_periodic
@@ -108,11 +109,14 @@ def named(table: pd.DataFrame, run: Run) -> pd.DataFrame:
 
 def save_variation(runs: Sequence[Run], tables: Sequence[pd.DataFrame], path: Path) -> None:
     """Save a figure of the coefficient of variation over time, with that of independent robots."""
-    figure, axes = new_figure()
-    draw_over_time(axes[0, 0], by_combination(runs, tables), "cv_area", "coefficient of variation of areas")
-    axes[0, 0].axhline(POISSON_CV, color="0.4", linestyle=":", label="independent positions (Poisson)")
-    axes[0, 0].legend(frameon=False, fontsize="small")
-    save(figure, path)
+
+    def draw(axes: Axes, groups: dict[str, list[pd.DataFrame]], colours: Mapping[str, Any] | None) -> None:
+        draw_over_time(axes, groups, "cv_area", "coefficient of variation of areas", colours)
+        line = axes.axhline(POISSON_CV, color="0.4", linestyle=":", label="independent positions (Poisson)")
+        from_zero(axes)
+        axes.legend(handles=None if colours is None else [line], frameon=False, fontsize="small")
+
+    save(drawn_by_combination(runs, tables, [draw]), path)
 
 
 def save_mean_of_arenas(
@@ -121,16 +125,23 @@ def save_mean_of_arenas(
     """Save the coefficient of variation over time: averaged over the runs in each arena, then over arenas."""
     rest = [name for name in group_names(runs) if name != "arena_file"]
     curves: dict[str, dict[str, list[pd.Series[Any]]]] = {}
+    firsts: dict[str, Run] = {}  # a run of each combination, in whichever arena
     for run, table in zip(runs, tables, strict=True):
-        arenas = curves.setdefault(group_of(run, rest) if rest else "all", {})
+        name = group_of(run, rest) if rest else "all"
+        labels = {label: run.labels.get(label) for label in rest}
+        firsts.setdefault(name, replace(run, arena=runs[0].arena, labels=labels))
+        arenas = curves.setdefault(name, {})
         arenas.setdefault(run.arena.name, []).append(table.set_index("time")["cv_area"])
     means = {name: [pd.concat(own, axis=1).mean(axis=1) for own in arenas.values()] for name, arenas in curves.items()}
-    figure, axes = new_figure()
-    draw_bands(axes[0, 0], means)
     count = len({run.arena.name for run in runs})
     over = f"mean over {count} arenas" if count > 1 else f"arena {literal(runs[0].arena.name)}"
-    axes[0, 0].set(xlabel="time (s)", ylabel=f"coefficient of variation of areas\n({over})")
-    axes[0, 0].set_ylim(bottom=0.0)
+
+    def draw(axes: Axes, groups: dict[str, list[list[pd.Series[Any]]]], colours: Mapping[str, Any] | None) -> None:
+        draw_bands(axes, {name: own for name, (own,) in groups.items()}, colours)
+        axes.set(xlabel="time (s)", ylabel=f"coefficient of variation of areas\n({over})")
+        from_zero(axes)
+
+    figure = drawn_by_combination(list(firsts.values()), list(means.values()), [draw])
     save(figure, folder / "cv_mean_across_arenas_over_time")
     parts = [
         mean_over_runs(pd.concat(own, axis=1, ignore_index=True)).rename_axis("time").reset_index().assign(group=name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +18,7 @@ from matplotlib.lines import Line2D
 from pogosim.analysis.trajectories import Run
 from pogosim.confidence import mean_over_runs
 from pogosim.fonts import any_characters, literal
-from pogosim.reports.groups import MOST_CURVES, by_combination, by_panel
+from pogosim.reports.groups import MOST_CURVES, by_panel
 
 T = TypeVar("T")
 
@@ -116,13 +117,21 @@ def drawn_by_combination(
                 draw(own, groups, colours)
                 own.set_title(literal(title), fontsize="medium")
         for column in axes.T:
-            for limits, set_limits in (("get_xlim", "set_xlim"), ("get_ylim", "set_ylim")):
-                ends = [getattr(own, limits)() for own in column]
-                for own in column:
-                    getattr(own, set_limits)(min(low for low, _ in ends), max(high for _, high in ends))
+            share_limits(column, "x")
+            share_limits(column, "y")
     if colours is not None and len(names) > 1:
         legend_below(figure, [literal(name) for name in names], list(colours.values()))
     return figure
+
+
+def share_limits(panels: Sequence[Axes], axis: str) -> None:
+    """Give panels the same limits; one without data may be linear beside logarithmic ones, and is left alone."""
+    scales = [getattr(own, f"get_{axis}scale")() for own in panels]
+    for scale in set(scales):
+        alike = list(itertools.compress(panels, [own == scale for own in scales]))
+        ends = [getattr(own, f"get_{axis}lim")() for own in alike]
+        for own in alike:
+            getattr(own, f"set_{axis}lim")(min(low for low, _ in ends), max(high for _, high in ends))
 
 
 def legend_below(figure: Figure, names: Sequence[str], colours: Sequence[Any]) -> None:
@@ -151,67 +160,87 @@ def draw_over_time(
     )
     axes.set_xlabel("time (s)")
     axes.set_ylabel(label)
-    axes.set_ylim(bottom=0.0)
+    from_zero(axes)
 
 
-def draw_each_run(axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]]) -> None:
-    """Draw a line for each run, in the colour of its combination."""
-    colours = colormaps["viridis"](np.linspace(0.0, 0.85, max(len(groups), 1)))
-    for colour, (name, curves) in zip(colours, groups.items(), strict=True):
+def from_zero(axes: Axes) -> None:
+    """Let the ordinate begin at 0, and end above all values: those of a constant curve are near the upper border."""
+    top = axes.dataLim.y1
+    axes.set_ylim(0.0, max(axes.get_ylim()[1], 1.05 * top if np.isfinite(top) else 0.0))
+
+
+def draw_each_run(
+    axes: Axes, groups: Mapping[str, Sequence[pd.Series[Any]]], colours: Mapping[str, Any] | None = None
+) -> None:
+    """Draw a line for each run, in the colour of its combination; without colours, in their own, with a legend."""
+    own_colours = colours_of(list(groups)) if colours is None else colours
+    for name, curves in groups.items():
         for number, curve in enumerate(curves):
             own = literal(name) if number == 0 else None
-            x = curve.index.to_numpy(dtype=float)
-            axes.plot(x, curve, color=colour, linewidth=0.8, alpha=0.8, label=own, marker="o" if len(x) == 1 else "")
-    name_curves(axes, len(groups))
+            x, marker = curve.index.to_numpy(dtype=float), "o" if len(curve) == 1 else ""
+            axes.plot(x, curve, color=own_colours[name], linewidth=0.8, alpha=0.8, label=own, marker=marker)
+    if colours is None:
+        name_curves(axes, len(groups))
 
 
 def name_curves(axes: Axes, count: int) -> None:
-    """Name several curves in a legend; beside the axes, if there are so many that it would cover them."""
-    if count > MOST_CURVES:
-        axes.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
-    elif count > 1:
+    """Name several curves in a legend."""
+    if count > 1:
         axes.legend(frameon=False, fontsize="small")
 
 
-def draw_violins(axes: Axes, groups: Mapping[str, Sequence[pd.DataFrame]], column: str, label: str) -> None:
-    """Draw the distribution of a column over times and runs for each combination, with median and extremes."""
+def draw_violins(
+    axes: Axes,
+    groups: Mapping[str, Sequence[pd.DataFrame]],
+    column: str,
+    label: str,
+    colours: Mapping[str, Any] | None = None,
+) -> None:
+    """Draw the distribution of a column over times and runs for each combination, with median and extremes.
+
+    Without colours, the combinations are named along the axis.
+    """
+    own_colours = colours_of(list(groups)) if colours is None else colours
     samples = {name: np.concatenate([table[column].to_numpy(float) for table in own]) for name, own in groups.items()}
     samples = {name: values[np.isfinite(values)] for name, values in samples.items()}
-    good = [(place, values) for place, values in enumerate(samples.values()) if len(values)]
+    names = list(own_colours)
+    good = [(names.index(name), values) for name, values in samples.items() if len(values)]
     if good:
         places, values = zip(*good, strict=True)
         drawn = axes.violinplot(values, positions=places, widths=0.8, showmedians=True)
-        colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(samples)))
         bodies: list[Any] = list(drawn["bodies"])  # type: ignore[call-overload]
         for place, body in zip(places, bodies, strict=True):
-            body.set(facecolor=colours[place], alpha=0.5)
+            body.set(facecolor=own_colours[names[place]], alpha=0.5)
         for part in ("cmedians", "cmins", "cmaxes", "cbars"):
             drawn[part].set(color="black", linewidth=1.0)
-    names = list(samples)
-    axes.set_xticks(range(len(names)), [literal(name) for name in names])
-    if len(names) > 2:
+    axes.set_xticks(range(len(names)), ["" if colours else literal(name) for name in names])
+    if len(names) > 2 and not colours:
         axes.tick_params(axis="x", rotation=30)
     axes.set_xlim(-0.7, len(names) - 0.3)
     axes.set_ylabel(label)
-    axes.set_ylim(bottom=0.0)
+    from_zero(axes)
 
 
-def save_over_time(runs: Sequence[Run], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path) -> None:
+DrawColumn = Callable[[Axes, dict[str, list[pd.DataFrame]], str, str, "Mapping[str, Any] | None"], None]
+
+
+def save_columns(
+    draw_column: DrawColumn,
+    runs: Sequence[Run],
+    tables: Sequence[pd.DataFrame],
+    panels: Mapping[str, str],
+    path: Path,
+) -> None:
     """Save a figure with a panel for each column; panels: column to label."""
 
     def draw(
         axes: Axes, groups: dict[str, list[pd.DataFrame]], colours: Mapping[str, Any] | None, column: str, label: str
     ) -> None:
-        draw_over_time(axes, groups, column, label, colours)
+        draw_column(axes, groups, column, label, colours)
 
     draws = [functools.partial(draw, column=column, label=label) for column, label in panels.items()]
     save(drawn_by_combination(runs, tables, draws), path)
 
 
-def save_violins(runs: Sequence[Run], tables: Sequence[pd.DataFrame], panels: Mapping[str, str], path: Path) -> None:
-    """Save a figure with a panel for each column; panels: column to label."""
-    groups = by_combination(runs, tables)
-    figure, axes = new_figure(columns=len(panels), width=max(4.5, 1.5 + 0.7 * len(groups)))
-    for panel, (column, label) in zip(axes[0], panels.items(), strict=True):
-        draw_violins(panel, groups, column, label)
-    save(figure, path)
+save_over_time = functools.partial(save_columns, draw_over_time)
+save_violins = functools.partial(save_columns, draw_violins)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from pogosim.analysis.arena import Floats
 from pogosim.analysis.displacement import diffusion_exponent
 from pogosim.analysis.trajectories import Run
 from pogosim.fonts import literal
-from pogosim.reports.figures import draw_bands, new_figure, save
+from pogosim.reports.figures import Draw, draw_bands, drawn_by_combination, from_zero, legend_below, new_figure, save
 from pogosim.reports.groups import by_combination
 from pogosim.reports.locomotion_tables import first_and_last_quarter
 
@@ -49,36 +50,37 @@ def groups(tables: Sequence[RunTables], names: Sequence[str]) -> dict[str, list[
     return by_combination([own.run for own in tables], tables, names)
 
 
-def curves(
-    tables: Sequence[RunTables], names: Sequence[str], table: str, x: str, y: str
-) -> dict[str, list[pd.Series[Any]]]:
-    """Return a curve per run, by combination. Curves without values are left out, but not their combinations."""
+def draw_curves(
+    axes: Axes, groups: Mapping[str, Sequence[RunTables]], colours: Mapping[str, Any] | None, table: str, x: str, y: str
+) -> None:
+    """Draw a mean with a band over runs per combination; for one run the standard error over robots, if known.
+
+    Curves without values are left out, but not their combinations.
+    """
     found: dict[str, list[pd.Series[Any]]] = {}
-    for group, own in groups(tables, names).items():
+    for name, own in groups.items():
         series = [getattr(one, table).set_index(x)[y].dropna() for one in own]
-        found[group] = [one for one in series if len(one)] or series[:1]
-    return found
-
-
-def draw_curves(axes: Axes, tables: Sequence[RunTables], names: Sequence[str], table: str, x: str, y: str) -> None:
-    """Draw a mean with a band over runs per combination; for one run the standard error over robots, if known."""
-    draw_bands(axes, curves(tables, names, table, x, y))
+        found[name] = [one for one in series if len(one)] or series[:1]
+    draw_bands(axes, found, colours)
     error = f"sem_{y.removeprefix('mean_')}"
-    if len(tables) == 1 and error in getattr(tables[0], table):
-        own = getattr(tables[0], table)
-        low, high = own[y] - own[error], own[y] + own[error]
-        axes.fill_between(own[x], low, high, color=axes.lines[-1].get_color(), alpha=0.25, linewidth=0)
+    (one, *others) = [one for own in groups.values() for one in own]
+    if not others and colours is None and error in getattr(one, table):
+        own_table = getattr(one, table)
+        low, high = own_table[y] - own_table[error], own_table[y] + own_table[error]
+        axes.fill_between(own_table[x], low, high, color=axes.lines[-1].get_color(), alpha=0.25, linewidth=0)
     if legend := axes.get_legend():
         legend.remove()
 
 
-def legend_below(figure: Figure, axes: Axes) -> None:
-    """Name the curves of these axes below the figure, where the names cover no data; a single curve needs no name."""
-    handles, labels = axes.get_legend_handles_labels()
-    if len(handles) < 2:
-        return
-    columns = 1 if max(map(len, labels)) > 40 else 2 if max(map(len, labels)) > 20 else 4
-    figure.legend(handles, labels, frameon=False, fontsize="small", ncols=columns, loc="outside lower center")
+def drawn(
+    tables: Sequence[RunTables], draws: Sequence[Draw[RunTables]], rows: int = 1, is_named: bool = True
+) -> Figure:
+    """Draw combinations with their names below the figure, if there are several."""
+    figure = drawn_by_combination([own.run for own in tables], tables, draws, rows)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    if is_named and not figure.legends and len(handles) > 1:
+        legend_below(figure, labels, [line.get_color() for line in figure.axes[0].lines[: len(labels)]])
+    return figure
 
 
 def band_words(tables: Sequence[RunTables], names: Sequence[str]) -> str:
@@ -91,14 +93,20 @@ def band_words(tables: Sequence[RunTables], names: Sequence[str]) -> str:
 
 def draw_speed_over_time(tables: Sequence[RunTables], names: Sequence[str], folder: Path) -> None:
     """Draw the mean speed and angular velocity over time."""
-    figure, panels = new_figure(1, 2, width=7.0, height=3.0)
-    labels = {"mean_speed_mm_s": "speed (mm/s)", "mean_angular_velocity_rad_s": "angular velocity (rad/s)"}
-    for axes, (column, label) in zip(panels[:, 0], labels.items(), strict=True):
-        draw_curves(axes, tables, names, "over_time", "time", column)
+
+    def draw(
+        axes: Axes, own: dict[str, list[RunTables]], colours: Mapping[str, Any] | None, column: str, label: str
+    ) -> None:
+        draw_curves(axes, own, colours, "over_time", "time", column)
         axes.set(xlabel="time (s)", ylabel=label)
-    panels[0, 0].set_ylim(0.0, 1.05 * panels[0, 0].get_ylim()[1])
-    panels[0, 0].set_title(band_words(tables, names), fontsize="medium")
-    legend_below(figure, panels[0, 0])
+        if column == "mean_speed_mm_s":
+            from_zero(axes)
+
+    labels = {"mean_speed_mm_s": "speed (mm/s)", "mean_angular_velocity_rad_s": "angular velocity (rad/s)"}
+    figure = drawn(
+        tables, [functools.partial(draw, column=name, label=label) for name, label in labels.items()], rows=2
+    )
+    figure.suptitle(band_words(tables, names), fontsize="medium")
     save(figure, folder / "speed_time")
 
 
@@ -174,20 +182,22 @@ def say_nothing_there(axes: Axes, text: str) -> None:
 MSD_KINDS = {"msd_mm2": "from the first position", "time_averaged_msd_mm2": "average over start times"}
 
 
-def draw_msd(tables: Sequence[RunTables], names: Sequence[str], folder: Path) -> None:
+def draw_msd(tables: Sequence[RunTables], folder: Path) -> None:
     """Draw mean squared displacements against the lag, on linear and on logarithmic axes."""
+
+    def draw(
+        axes: Axes, own: dict[str, list[RunTables]], colours: Mapping[str, Any] | None, column: str, scale: str
+    ) -> None:
+        draw_curves(axes, own, colours, "msd", "lag_s", column)
+        axes.set(xlabel="lag (s)", ylabel=f"mean squared displacement (mm²)\n({MSD_KINDS[column]})")
+        if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
+            say_nothing_there(axes, "needs save times that are evenly spaced, two or more")
+        elif scale == "log":
+            on_logarithmic_axes(axes, colours is None)
+
     for name, scale in (("msd_linear", "linear"), ("msd_loglog", "log")):
-        figure, panels = new_figure(2, 1, width=5.4, height=4.6)
-        for axes, (column, title) in zip(panels[0], MSD_KINDS.items(), strict=True):
-            draw_curves(axes, positive_lags(tables) if scale == "log" else tables, names, "msd", "lag_s", column)
-            axes.set(xlabel="lag (s)", ylabel="mean squared displacement (mm²)")
-            axes.set_title(title, fontsize="medium")
-            if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines):
-                say_nothing_there(axes, "needs save times that are evenly spaced, two or more")
-            elif scale == "log":
-                on_logarithmic_axes(axes)
-        if scale == "linear":
-            legend_below(figure, panels[0, 0])
+        draws = [functools.partial(draw, column=column, scale=scale) for column in MSD_KINDS]
+        figure = drawn(positive_lags(tables) if scale == "log" else tables, draws, is_named=scale == "linear")
         save(figure, folder / name)
 
 
@@ -196,9 +206,9 @@ def positive_lags(tables: Sequence[RunTables]) -> list[RunTables]:
     return [replace(own, msd=own.msd[own.msd["lag_s"] > 0.0]) for own in tables]
 
 
-def on_logarithmic_axes(axes: Axes) -> None:
-    """Make both axes logarithmic, with the exponents of the first and the last quarter of the lags in the legend."""
-    for line in axes.lines:
+def on_logarithmic_axes(axes: Axes, names_curves: bool) -> None:
+    """Make both axes logarithmic; a legend has the exponents of the first and the last quarter of the lags."""
+    for line in axes.lines if names_curves else ():
         lag, mean = np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
         early, late = first_and_last_quarter(lag)
         first, last = diffusion_exponent(lag[early], mean[early]), diffusion_exponent(lag[late], mean[late])
@@ -210,25 +220,29 @@ def on_logarithmic_axes(axes: Axes) -> None:
         return
     axes.set(xscale="log", yscale="log")
     axes.set_ylim(0.5 * values[values > 0.0].min(), 2.0 * values[values > 0.0].max())
+    if not names_curves:
+        return
     handles, labels = axes.get_legend_handles_labels()
     title = "exponent $\\alpha$ of the first, last 25 % of lags"
     style: dict[str, Any] = {"frameon": False, "fontsize": "small", "title": title, "title_fontsize": "small"}
     axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.16), **style)
 
 
-def draw_autocorrelations(tables: Sequence[RunTables], names: Sequence[str], folder: Path) -> None:
+def draw_autocorrelations(tables: Sequence[RunTables], folder: Path) -> None:
     """Draw the autocorrelations of heading and velocity against the lag, up to half the longest one."""
-    figure, panels = new_figure(2, 1, width=5.4, height=4.2)
-    for axes, column in zip(panels[0], ("heading", "velocity"), strict=True):
-        draw_curves(axes, tables, names, "correlations", "lag_s", column)
+    longest_s = max(float(own.correlations["lag_s"].max()) for own in tables)
+
+    def draw(axes: Axes, own: dict[str, list[RunTables]], colours: Mapping[str, Any] | None, column: str) -> None:
+        draw_curves(axes, own, colours, "correlations", "lag_s", column)
         axes.set(xlabel="lag (s)", ylabel=f"autocorrelation of the {column}")
         axes.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
         if not any(np.isfinite(line.get_ydata()).any() for line in axes.lines[:-1]):
             say_nothing_there(axes, "needs evenly spaced save times, and robots that turn or move")
-            continue
-        axes.set_xlim(0.0, max(float(own.correlations["lag_s"].max()) for own in tables) / 2.0 or None)
+            return
+        axes.set_xlim(0.0, longest_s / 2.0 or None)
         axes.set_ylim(top=1.05)
-    legend_below(figure, panels[0, 0])
+
+    figure = drawn(tables, [functools.partial(draw, column=column) for column in ("heading", "velocity")])
     save(figure, folder / "autocorrelation")
 
 
@@ -237,5 +251,5 @@ def draw_all(tables: Sequence[RunTables], names: Sequence[str], folder: Path) ->
     draw_speed_over_time(tables, names, folder)
     draw_speed_boxes(tables, names, folder)
     draw_peclet(tables, folder)
-    draw_msd(tables, names, folder)
-    draw_autocorrelations(tables, names, folder)
+    draw_msd(tables, folder)
+    draw_autocorrelations(tables, folder)

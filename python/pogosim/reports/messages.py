@@ -20,7 +20,8 @@ from pogosim.analysis.trajectories import label_columns
 from pogosim.command.parser import warn
 from pogosim.errors import AnalysisError
 from pogosim.fonts import literal
-from pogosim.reports.figures import new_figure, save
+from pogosim.reports.figures import legend_below, new_figure, save
+from pogosim.reports.groups import MOST_CURVES
 from pogosim.reports.options import output_folder, write_table
 from pogosim.utils import load_dataframe
 
@@ -124,5 +125,9 @@ def drawn(distance: pd.DataFrame, cluster: pd.DataFrame, by: Sequence[str]) -> F
     right.set_xlabel("cluster size (sender and robots in reach)")
     right.xaxis.set_major_locator(MaxNLocator(integer=True))
     right.plot([], [], color="0.3", marker="_", markersize=9, label="law")
-    right.legend(frameon=False, fontsize="small")
+    if len(names) > MOST_CURVES:
+        right.legend(handles=right.lines[-1:], frameon=False, fontsize="small")
+        legend_below(figure, [literal(name) for name in names], list(colours.values()))
+    else:
+        right.legend(frameon=False, fontsize="small")
     return figure

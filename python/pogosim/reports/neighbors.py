@@ -6,13 +6,14 @@ import functools
 import pickle
 import tempfile
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from pogosim.analysis.arena import Floats
@@ -33,7 +34,15 @@ from pogosim.fonts import literal
 from pogosim.outputs import OutputError, leads_to
 from pogosim.reports.command_lines import NEIGHBOURS
 from pogosim.reports.each_run import for_each_run
-from pogosim.reports.figures import draw_bands, draw_each_run, draw_means, draw_over_time, new_figure, save
+from pogosim.reports.figures import (
+    draw_bands,
+    draw_each_run,
+    draw_means,
+    drawn_by_combination,
+    from_zero,
+    new_figure,
+    save,
+)
 from pogosim.reports.groups import by_combination
 from pogosim.reports.options import labelled, open_runs, output_folder, write_table
 
@@ -96,8 +105,8 @@ def analyze(options: Namespace, prog: str) -> None:
     write_statistics(folder / STATISTICS, options.input, time, histogram, bands)
     listed = column_of(runs[0], options.neighborsCol)
     to_whom = "neighbours listed" if listed else "nearest neighbour" if options.k == 1 else f"{options.k} nearest"
-    for basis, curves in bands.items():
-        save_distances(curves, f"distance to {to_whom} (mm)", folder / f"knn_{basis}")
+    for basis in bands:
+        save_distances(runs, bands[basis], f"distance to {to_whom} (mm)", folder / f"knn_{basis}")
     save_degrees(runs, found, folder)
 
 
@@ -205,6 +214,9 @@ def over_robots(found: Sequence[Found]) -> pd.DataFrame:
     return pd.concat(parts)
 
 
+DrawCurves = Callable[[Axes, "dict[str, list[pd.Series[Any]]]", "Mapping[str, Any] | None"], None]
+
+
 def write_statistics(
     path: Path,
     inputs: Sequence[str],
@@ -223,39 +235,45 @@ def write_statistics(
         pickle.dump({name: table.reset_index(drop=True) for name, table in tables.items()}, file, protocol=4)
 
 
-def save_distances(curves: dict[str, pd.DataFrame], label: str, path: Path) -> None:
+def save_distances(runs: Sequence[Run], bands: Mapping[str, pd.DataFrame], label: str, path: Path) -> None:
     """Save a figure of distances over time, with confidence bands over runs or robots."""
-    figure, axes = new_figure()
-    draw_means(axes[0, 0], curves)
-    axes[0, 0].set_xlabel("time (s)")
-    axes[0, 0].set_ylabel(label)
-    save(figure, path)
+
+    def draw(axes: Axes, groups: dict[str, list[str]], colours: Mapping[str, Any] | None) -> None:
+        draw_means(axes, {name: bands[own[0]] for name, own in groups.items()}, colours)
+        axes.set(xlabel="time (s)", ylabel=label)
+        axes.set_ylim(bottom=max(axes.get_ylim()[0], 0.0))
+
+    numbers = by_combination(runs, range(len(runs)))
+    combinations = {number: name for name, own in numbers.items() for number in own}
+    save(drawn_by_combination(runs, [combinations[number] for number in range(len(runs))], [draw]), path)
 
 
 def save_degrees(runs: Sequence[Run], found: Sequence[Found], folder: Path) -> None:
     """Save the figures of degrees: Fano factor and histograms, over runs and run by run."""
-    groups = by_combination(runs, [own.time for own in found])
-    figure, axes = new_figure()
-    draw_over_time(axes[0, 0], groups, "fano_factor", "Fano factor of the degrees")
-    save(figure, folder / "fano_factor_over_time_corrected")
-    figure, axes = new_figure()
-    draw_each_run(
-        axes[0, 0],
-        {name: [own.set_index("time")["fano_factor"] for own in tables] for name, tables in groups.items()},
-    )
-    axes[0, 0].set(xlabel="time (s)", ylabel="Fano factor of the degrees")
-    axes[0, 0].set_ylim(bottom=0.0)
-    save(figure, folder / "fano_factor_over_time_all_runs")
-    histograms = by_combination(runs, [own.histogram.set_index("degree") for own in found])
-    shares = {name: shares_of(own, "count") for name, own in histograms.items()}
-    for draw, name in ((draw_bands, ""), (draw_each_run, "_all_runs")):
-        figure, axes = new_figure()
-        draw(axes[0, 0], shares)
-        axes[0, 0].set(xlabel="degree (neighbours of a robot)", ylabel="share of robots")
-        axes[0, 0].set_ylim(bottom=0.0)
-        axes[0, 0].xaxis.set_major_locator(MaxNLocator(integer=True))
+    fano = [own.time.set_index("time")["fano_factor"] for own in found]
+    histograms = [own.histogram.set_index("degree") for own in found]
+
+    def draw_fano(
+        axes: Axes, groups: dict[str, list[pd.Series[Any]]], colours: Mapping[str, Any] | None, draw: DrawCurves
+    ) -> None:
+        draw(axes, groups, colours)
+        axes.set(xlabel="time (s)", ylabel="Fano factor of the degrees")
+        from_zero(axes)
+
+    def draw_shares(
+        axes: Axes, groups: dict[str, list[pd.DataFrame]], colours: Mapping[str, Any] | None, draw: DrawCurves
+    ) -> None:
+        draw(axes, {name: shares_of(own, "count") for name, own in groups.items()}, colours)
+        axes.set(xlabel="degree (neighbours of a robot)", ylabel="share of robots")
+        from_zero(axes)
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+
+    for draw, ending, name in ((draw_bands, "corrected", ""), (draw_each_run, "all_runs", "_all_runs")):
+        figure = drawn_by_combination(runs, fano, [functools.partial(draw_fano, draw=draw)])
+        save(figure, folder / f"fano_factor_over_time_{ending}")
+        figure = drawn_by_combination(runs, histograms, [functools.partial(draw_shares, draw=draw)])
         save(figure, folder / f"overall_neighbor_degree_histogram{name}")
-    save_first_and_last(histograms, folder / "degree_histogram_first_last")
+    save_first_and_last(by_combination(runs, histograms), folder / "degree_histogram_first_last")
 
 
 def shares_of(histograms: Sequence[pd.DataFrame], column: str) -> list[pd.Series[Any]]:
