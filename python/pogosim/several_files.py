@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from pogosim.continued import with_joined_parts
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RUN, is_one_run, run_numbers, tells_runs_apart
 from pogosim.times import with_exact_times
@@ -168,7 +169,8 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Join the rows of several data files.
 
     Args:
-        files: Path, rows and metadata of each, as `load_dataframe` reads one of them.
+        files: Path, rows and metadata of each, as `load_dataframe` reads one of them. Parts of a run that went on from
+            a saved state count as one file, whose rows after the state are those of the later part.
 
     Returns:
         All rows, in the order of the files, with these columns in addition, unless the file has them:
@@ -180,10 +182,13 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
         their arenas; a file of one run is a combination of its own.
 
     Raises:
+        ContinuedError: A part of a run that went on from a saved state is missing.
         ValueError: There are no files; or the program of one has a column by which files are told apart.
     """
     if not files:
         raise ValueError("there are no files to read: the list is empty")
+    names = [str(path) for path, _, _ in files]
+    files = with_joined_parts(files, [configuration_of(metadata) for _, _, metadata in files])
     configurations = [configuration_of(metadata) for _, _, metadata in files]
     of_batches = [seeds_of_runs(rows, metadata) for _, rows, metadata in files]
     added: dict[str, list[Any]] = {
@@ -215,5 +220,5 @@ def join_files(files: Sequence[Loaded]) -> tuple[pd.DataFrame, dict[str, Any]]:
     metadata.setdefault("configuration", {})
     if not metadata.get("arena_polygons") and any(entry.get("arena_polygons") for entry in combinations):
         metadata["combinations"] = combinations
-    metadata["files"] = [str(path) for path, _, _ in files]
+    metadata["files"] = names
     return pd.concat(parts, ignore_index=True), metadata

@@ -40,7 +40,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
     Args:
         path: Feather, Parquet or CSV file, written by the simulator or by a batch of runs. Several files, as a list or
             as a pattern such as "results/*.feather" (`**` also searches subfolders), are joined, see
-            `pogosim.several_files.join_files`: they get columns with their number, seed and varied parameters.
+            `pogosim.several_files.join_files`: they get columns with their number, seed and varied parameters. Parts of
+            a run that went on from a saved state are one run; a later part alone is read as it is.
 
     Returns:
         The rows (one per object and save time; lengths in mm, times in s, angles in rad), and the
@@ -62,7 +63,8 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
     Raises:
         FileNotFoundError: There is no such file, or none that fits the pattern.
         OSError: A file cannot be read.
-        ValueError: What was given is no path, or an empty list. A file is damaged, or neither a complete Feather file
+        ValueError: What was given is no path, or an empty list. An earlier part of a run that went on from a saved
+            state is not among several files. A file is damaged, or neither a complete Feather file
             nor an unfinished one of the simulator.
     """
     if isinstance(path, Iterable) and not isinstance(path, (str, bytes, os.PathLike)):

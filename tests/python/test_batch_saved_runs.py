@@ -25,8 +25,6 @@ from batches import (
     wait_until_gone,
     write_options,
 )
-from pogosim.batch.errors import BatchError
-from pogosim.batch.saved_runs import join_parts, parts_of
 from test_state_files import program_of
 
 LONG: dict[str, object] = {"simulation_time": 120.0, "save_data_period": 1.0, "time_step": 0.002}
@@ -237,42 +235,3 @@ def test_states_are_wanted_at_times(tmp_path: Path) -> None:
     done = batch(tmp_path, "--save-states", "-1")
     assert done.code == 2
     assert "--save-states: expected a time from 0" in done.errors
-
-
-# Rows of parts.
-
-
-def write_part(path: Path, first: int, rows: range, finished: bool = True) -> None:
-    """Write a part, whose rows are their numbers."""
-    metadata = {b"configuration": b"x", **({b"continued_after_rows": b"%d" % first} if first else {})}
-    schema = pa.schema([("row", pa.int64())], metadata)
-    with path.open("wb") as file:
-        if finished:
-            with pa.ipc.new_file(file, schema) as writer:
-                writer.write_table(pa.table([list(rows)], schema=schema))
-        else:
-            file.write(b"ARROW1\0\0")
-            writer = pa.ipc.new_stream(file, schema)
-            for row in rows:
-                writer.write_table(pa.table([[row]], schema=schema))
-            file.write(b"\xff\xff\xff\xff\x10")
-
-
-def test_rows_of_parts_are_joined(tmp_path: Path) -> None:
-    """Also where a part saved no state, or was killed while it began."""
-    data = tmp_path / "data.feather"
-    write_part(tmp_path / "data.1.feather", 0, range(12), finished=False)
-    write_part(tmp_path / "data.2.feather", 10, range(10, 30))
-    write_part(tmp_path / "data.3.feather", 10, range(10, 25), finished=False)
-    (tmp_path / "data.10.feather").write_bytes(b"ARROW1\0\0")
-    write_part(data, 20, range(20, 40))
-    assert [path.name for path in parts_of(data)][-2:] == ["data.10.feather", "data.feather"]
-    join_parts(data)
-    table = pa.feather.read_table(data)
-    assert table.column("row").to_pylist() == list(range(40))
-    assert table.schema.metadata == {b"configuration": b"x"}
-    join_parts(data)
-    (tmp_path / "data.1.feather").unlink()
-    write_part(data, 20, range(20, 40))
-    with pytest.raises(BatchError, match="the first 10 rows of the run are missing"):
-        join_parts(data)
