@@ -244,9 +244,15 @@ def whole(files: Sequence[Loaded], ends: Sequence[float | None], by_rows: bool) 
     return path, table, {key: value for key, value in metadata.items() if key not in (AFTER_ROWS, FROM_S)}
 
 
+def check_columns(part: Path, own: pa.Schema, last: Path, schema: pa.Schema) -> None:
+    """Raise ContinuedError if a part has other columns than the last one."""
+    if not own.equals(schema, check_metadata=False):
+        raise ContinuedError(other_columns(part, last))
+
+
 def other_columns(part: Path, last: Path) -> str:
     """Return what is said of parts that cannot be one table."""
-    return f"{part} and {last} are parts of one run, but with other columns: join neither"
+    return f"{part} and {last} are parts of one run, but with other columns"
 
 
 # ---- data files ----
@@ -330,8 +336,7 @@ def rows_of_parts(counted: Sequence[tuple[Part, float | None]], schema: pa.Schem
     """
     for part, end in counted:
         for batch in rows_of(part.path, None if end is None else int(end - part.begin)):
-            if not batch.schema.equals(schema, check_metadata=False):
-                raise ContinuedError(other_columns(part.path, counted[-1][0].path))
+            check_columns(part.path, batch.schema, counted[-1][0].path, schema)
             yield batch
 
 

@@ -15,7 +15,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -46,6 +46,10 @@ class RecoverError(ToolError):
     """The file cannot be recovered; says why."""
 
 
+class NoRowsError(RecoverError):
+    """The run was killed before its first row could be written."""
+
+
 @dataclass(frozen=True)
 class Unfinished:
     """What can be read of a file without its footer."""
@@ -56,18 +60,27 @@ class Unfinished:
     @property
     def up_to(self) -> str:
         """How far the rows go: "37 rows, up to t = 1.5 s"."""
-        rows = f"{self.table.num_rows} row{'' if self.table.num_rows == 1 else 's'}"
-        time_s = self.last_time_s
-        return rows if time_s is None else f"{rows}, up to t = {time_s:.9g} s"
+        return rows_up_to(self.table.num_rows, self.last_time_s)
 
     @property
     def last_time_s(self) -> float | None:
         """The largest time; None where there is none, or not one column of times."""
-        columns = self.table.schema.get_all_field_indices("time")
-        if len(columns) != 1 or self.table.schema.field(columns[0]).type not in (pa.float32(), pa.float64()):
-            return None
-        time_s = pc.max(self.table.column(columns[0])).as_py()
-        return time_s if time_s is not None and math.isfinite(time_s) else None
+        return last_time_s(self.table)
+
+
+def rows_up_to(rows: int, time_s: float | None) -> str:
+    """Return how far rows go: "37 rows, up to t = 1.5 s"."""
+    count = f"{rows} row{'' if rows == 1 else 's'}"
+    return count if time_s is None else f"{count}, up to t = {time_s:.9g} s"
+
+
+def last_time_s(table: pa.Table) -> float | None:
+    """Return the largest time in rows; None where there is none, or not one column of times."""
+    columns = table.schema.get_all_field_indices("time")
+    if len(columns) != 1 or table.schema.field(columns[0]).type not in (pa.float32(), pa.float64()):
+        return None
+    time_s = pc.max(table.column(columns[0])).as_py()
+    return time_s if time_s is not None and math.isfinite(time_s) else None
 
 
 def reraise_system_error(error: BaseException) -> None:
@@ -101,7 +114,7 @@ def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
         reader = ipc.open_stream(file)
     except DAMAGED as error:
         reraise_system_error(error)
-        raise RecoverError(f"{path} is truncated before its first row") from error
+        raise NoRowsError(f"{path} is truncated before its first row") from error
     metadata = reader.schema.metadata or {}
     if not any(key in metadata for key in OURS):
         raise RecoverError(f"{path} is not a data file of the simulator: its metadata have no configuration")
@@ -255,15 +268,26 @@ def recover(path: PathLike, output: PathLike | None = None) -> Unfinished:
 def write_recovered(unfinished: Unfinished, target: Path, like: os.stat_result) -> None:
     """Write the complete file, with the permissions in `like`, and put it in its place when all is written."""
     table = unfinished.table.replace_schema_metadata(recovered_schema(unfinished).metadata).combine_chunks()
+    write_complete([table], table.schema, target, like)
+
+
+def write_complete(tables: Iterable[pa.Table], schema: pa.Schema, target: Path, like: os.stat_result) -> None:
+    """Write rows to a file in the format of its name, with the permissions in `like`, in its place when all is there.
+
+    Raises:
+        RecoverError: What is there already cannot be overwritten; says where the rows are.
+        OSError: They cannot be written.
+    """
     with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".pogosim-recover-", delete=False) as file:
         scratch = Path(file.name)
         try:
             kind = format_of(target) or FEATHER
-            with contextlib.closing(table_writer(file, kind, table.schema)) as writer:
-                writer.write_table(table)
+            with contextlib.closing(table_writer(file, kind, schema)) as writer:
+                for table in tables:
+                    writer.write_table(table)
             file.flush()
             os.fsync(file.fileno())
-            write_metadata_beside(target, kind, table.schema)
+            write_metadata_beside(target, kind, schema)
             if must_be_written_in_place(target, scratch):
                 copy_over(scratch, target)
                 scratch.unlink()

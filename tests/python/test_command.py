@@ -26,6 +26,7 @@ SUBCOMMANDS = (
     "report",
     "compare",
     "recover",
+    "join",
     "flash",
     "arena",
     "calibrate",

@@ -12,8 +12,10 @@ import pyarrow as pa
 import pytest
 import yaml
 from pogosim.continued import ContinuedError, Part, counted_parts, in_order, join_parts, parts_of
+from pogosim.tables import read_other
 from pogosim.utils import load_dataframe
 from running import example, run
+from test_command import command, refusal
 
 ONE_FILE = "data.[cfp]*[rtv]"  # data.feather, but not data.1.feather or data.csv.yaml
 
@@ -163,3 +165,83 @@ def test_files_that_are_no_parts_are_runs_as_before(tmp_path: Path) -> None:
         metadata = {"configuration": yaml.safe_dump({"seed": seed}), "program_version": "v1"}
         pa.feather.write_feather(table.replace_schema_metadata(metadata), str(tmp_path / f"{number}.feather"))
     assert load_dataframe(tmp_path / "*.feather")[0]["run"].tolist() == [0, 0, 1, 1]
+
+
+# ---- pogosim join ----
+
+
+def table_in(path: Path) -> pa.Table:
+    """Read a file with its metadata."""
+    other = read_other(path)
+    return pa.feather.read_table(path, memory_map=False) if other is None else other
+
+
+def test_joined_file_is_that_of_the_uninterrupted_run(folder: Path, tmp_path: Path) -> None:
+    """Rows, types, metadata and their order, in any format; rows of earlier parts after the states are not in it."""
+    (whole,) = (folder / "whole").glob(ONE_FILE)
+    parts = [folder / "parts" / name for name in (whole.name, f"data.2{whole.suffix}", f"data.1{whole.suffix}")]
+    expected = table_in(whole)
+    for ending in (".feather", ".csv", ".parquet"):
+        output = tmp_path / f"joined{ending}"
+        result = command(tmp_path, "join", *map(str, parts), "-o", output.name)
+        assert (result.code, result.errors) == (0, "")
+        assert result.output == f"joined{ending}: {expected.num_rows} rows, up to t = 6 s, of 3 parts\n"
+        joined = table_in(output)
+        assert joined.equals(expected)
+        assert list((joined.schema.metadata or {}).items()) == list((expected.schema.metadata or {}).items())
+    (tmp_path / "joined.feather").rename(tmp_path / "run.feather")
+    result = command(tmp_path, "analyze", "coverage", "-i", "run.feather", "-o", "results")
+    assert result.code == 0, result.errors
+
+
+def test_message_logs_are_joined(tmp_path: Path) -> None:
+    make_runs(tmp_path, "feather")
+    parts = [f"parts/{name}" for name in ("log.1.feather", "log.2.feather", "log.feather")]
+    result = command(tmp_path, "join", *parts, "-o", "log.feather")
+    assert result.code == 0, result.errors
+    assert table_in(tmp_path / "log.feather").equals(table_in(tmp_path / "whole" / "log.feather"))
+
+
+def test_killed_parts_are_joined(tmp_path: Path) -> None:
+    """Those without rows of the run are said; where the last one was killed, the metadata say it."""
+    write_part(tmp_path / "data.1.feather", 0, range(12), finished=False)
+    write_part(tmp_path / "data.2.feather", 10, range(10, 30))
+    (tmp_path / "data.3.feather").write_bytes(b"ARROW1\0\0")
+    write_part(tmp_path / "data.feather", 10, range(10, 25), finished=False)
+    names = sorted(path.name for path in tmp_path.glob("*.feather"))
+    result = command(tmp_path, "join", *names, "-o", "all.feather")
+    assert (result.code, result.errors) == (0, "")
+    assert result.output.splitlines() == [
+        "all.feather: 25 rows, of 2 parts",
+        "data.3.feather: not needed, other parts have its rows",
+        "data.2.feather: not needed, other parts have its rows",
+    ]
+    assert table_in(tmp_path / "all.feather").column("row").to_pylist() == list(range(25))
+
+
+def test_what_cannot_be_joined_is_said_in_one_line(tmp_path: Path) -> None:
+    write_part(tmp_path / "data.1.feather", 0, range(12))
+    write_part(tmp_path / "data.feather", 10, range(10, 30))
+    write_part(tmp_path / "other.feather", 40, range(40, 50))
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def said(*arguments: str) -> str:
+        return refusal(command(tmp_path, "join", *arguments)).removeprefix("pogosim join: ")
+
+    missing = "goes on from a saved state, and the first 10 rows of the run are missing"
+    assert said("data.feather", "-o", "x.feather").startswith(f"data.feather {missing}")
+    assert said("data.1.feather", "-o", "x.feather") == "no run goes on from a saved state in data.1.feather"
+    assert "the first 40 rows of the run are missing" in said("data.1.feather", "other.feather", "-o", "x.feather")
+    assert "is one of the parts" in said("data.1.feather", "data.feather", "-o", "data.feather")
+    assert said("no.feather", "-o", "x.feather") == "no.feather: no such file or directory"
+    assert "its format is unknown" in said("data.1.feather", "data.feather", "-o", "x.png")
+    assert "required: -o/--output" in said("data.1.feather", "data.feather")
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_parts_of_other_runs_are_told(tmp_path: Path) -> None:
+    make_runs(tmp_path, "feather")
+    make_runs(tmp_path, "feather", seed=4, name="_of_another")
+    parts = ["parts/data.1.feather", "parts_of_another/data.2.feather"]
+    line = refusal(command(tmp_path, "join", *parts, "-o", "x.feather"))
+    assert line.endswith(f"{parts[0]} and {parts[1]} are not of one run: seed is 3 in the one, and 4 in the other")

@@ -46,6 +46,7 @@ COMMANDS = Table(
         "report": Own("pogosim.run_report.command:main", "write a page on a run or a batch: replay, figures, numbers"),
         "compare": Own("pogosim.comparison.command:main", "tell where two runs or two batches differ"),
         "recover": Own("pogosim.command.recover:main", "make a complete data file of a run that was killed"),
+        "join": Own("pogosim.command.join:main", "make one data file of a run that went on from saved states"),
         "flash": Own("pogosim.command.flash:main", "look into archives of robots' flash memory, and make them"),
         "arena": Own("pogosim.geometry.command:main", "draw, check, scale and convert arenas"),
         "calibrate": Own(
