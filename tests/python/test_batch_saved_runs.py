@@ -20,6 +20,7 @@ from batches import (
     batch_apart,
     ended,
     results,
+    script,
     simulators_in,
     start_batch,
     wait_until_gone,
@@ -99,8 +100,32 @@ def test_batch_that_is_asked_to_end_saves_states_at_once(tmp_path: Path) -> None
     while not list(tmp_path.glob("tmp/sim_saved*/*/frames/data.feather")) and time.monotonic() < end_s:
         time.sleep(0.01)
     time.sleep(0.5)
-    end(process, signal.SIGTERM)
+    assert end(process, signal.SIGTERM).splitlines()[-1] == (
+        "pogobatch: interrupted: the states of 2 unfinished runs are in tmp; the same command continues"
+    )
     assert len(states_in(tmp_path)) == 2
+
+
+def test_batch_says_what_it_leaves_and_how_states_are_continued(tmp_path: Path) -> None:
+    """Without `--save-states`, runs that have states begin anew; not without a word."""
+    long = tmp_path / "long"
+    long.touch()
+    lines = f'[ "$seed" = 2 ] && [ -e "{long}" ] && set -- "$@" --set simulation_time=1e6'
+    program = script(tmp_path / "simulator", lines, program_of(tmp_path / "program"))
+    write_options(tmp_path, {**LONG, "simulation_time": 2.0})
+    process = start_batch(tmp_path, "-j", "1", "-r", "3", *SAVING, program=program)
+    end_s = time.monotonic() + LIMIT_S
+    while time.monotonic() < end_s and not (
+        len(list(tmp_path.glob("tmp/done_*/*.feather"))) == 2 and states_in(tmp_path)
+    ):
+        time.sleep(0.01)
+    last = end(process, signal.SIGTERM).splitlines()[-1]
+    left = "2 finished runs and the state of 1 unfinished run are in tmp"
+    assert last == f"pogobatch: interrupted: {left}; the same command continues"
+    long.unlink()
+    done = batch_apart(tmp_path, "-j", "1", "-r", "3", program=program)
+    assert done.code == 0, done.errors
+    assert "1 unfinished run has a saved state: give --save-states to continue it" in done.errors
 
 
 def test_killed_simulators_go_on_while_the_batch_does(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 import pogosim
 from pogosim.batch.ending import Report, RunsFailedError, catch_signals, ended, start_logging
@@ -21,6 +22,7 @@ from pogosim.batch.run_options import (
     runner_of,
 )
 from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown_subcommand
+from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.errors import ToolError
 from pogosim.lines import say, say_error
 
@@ -99,7 +101,14 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
         do = run_batch
     start_logging(getattr(parsed, "verbose", False), f"{prog}: %(message)s")
     catch_signals()
-    return ended(name or "run", lambda: do(parsed), getattr(parsed, "json", False), getattr(parsed, "temp_base", None))
+    kept = getattr(parsed, "temp_base", None)
+    return ended(name or "run", lambda: do(parsed), getattr(parsed, "json", False), kept, lambda: kept_of(parsed))
+
+
+def kept_of(arguments: argparse.Namespace) -> str:
+    """Return what a batch has left in its folder for temporary files, in words; empty: nothing."""
+    batch = batch_name([arguments.config, arguments.output_dir, arguments.simulator_binary or "."])
+    return TemporaryFolder(Path(arguments.temp_base).absolute(), batch, is_kept=True).kept()
 
 
 def help_of(words: Sequence[str], prog: str) -> int:

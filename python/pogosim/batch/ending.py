@@ -71,7 +71,13 @@ def start_logging(verbose: bool, style: str, *others: str) -> None:
         own.setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
-def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: str | None) -> int:
+def ended(
+    operation: str,
+    command: Callable[[], Report],
+    as_json: bool,
+    kept: str | None,
+    counted: Callable[[], str] = lambda: "",
+) -> int:
     """Run a command to its end; returns its exit code.
 
     Args:
@@ -79,10 +85,11 @@ def ended(operation: str, command: Callable[[], Report], as_json: bool, kept: st
         command: Returns what it has done.
         as_json: Print that as JSON, with `operation`, `ok` and perhaps `error`.
         kept: Folder of finished runs, which stay if it is interrupted; None: there are none.
+        counted: Returns how many those are, and how many states of others.
     """
     report: Report = {}
     with contextlib.redirect_stdout(sys.stderr) if as_json else contextlib.nullcontext():
-        code, error = called(command, report, kept)
+        code, error = called(command, report, kept, counted)
     if as_json:
         problem = {"error": error} if error else {}
         try:
@@ -112,7 +119,9 @@ def json_parts(report: Report) -> Iterator[str]:
     yield "}"
 
 
-def called(command: Callable[[], Report], report: Report, kept: str | None) -> tuple[int, str]:
+def called(
+    command: Callable[[], Report], report: Report, kept: str | None, counted: Callable[[], str]
+) -> tuple[int, str]:
     """Call a command, and say what keeps it from ending well; returns the exit code, and the message."""
     code = WRONG
     try:
@@ -136,7 +145,17 @@ def called(command: Callable[[], Report], report: Report, kept: str | None) -> t
     except MemoryError:
         message = "not enough memory for this many combinations and runs; make several batches"
     except KeyboardInterrupt:
-        advice = f"; finished runs are kept in {kept}: the same command continues" if kept else ""
-        code, message = INTERRUPTED, f"interrupted{advice}"
+        code, message = INTERRUPTED, f"interrupted{advice_after_interruption(kept, counted)}"
     log.error("%s", message)
     return code, message
+
+
+def advice_after_interruption(kept: str | None, counted: Callable[[], str]) -> str:
+    """Return what is said of an interrupted command beside that: what it has left, and how it goes on."""
+    if not kept:
+        return ""
+    with contextlib.suppress(OSError):
+        if there := counted():
+            verb = "is" if there == "1 finished run" else "are"
+            return f": {there} {verb} in {kept}; the same command continues"
+    return f"; finished runs are kept in {kept}: the same command continues"

@@ -321,8 +321,7 @@ class PogobotBatchRunner:
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
-        if self.workers.save_every_s is not None:
-            self.tell_of_states(waiting)
+        self.tell_of_states(waiting)
         with self.workers.opened() as do:
             outcomes = do(waiting)
             if not done:
@@ -341,13 +340,22 @@ class PogobotBatchRunner:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
 
     def tell_of_states(self, waiting: Sequence[Task]) -> None:
-        """Say which runs go on, and which cannot."""
-        if self.run_settings is not None and not self.run_settings.saves_states:
-            log.warning("--save-states: %s is a Python file, whose runs cannot be saved", self.simulator_binary)
-            return
+        """Say which runs go on, which cannot, and which would if they were asked to."""
         keys = {task.key for task in waiting}
         found = [state.parent.name for state in states_in(self.temporary.saved, "*/")]
         going_on = sum(name.partition("_")[0] in keys for name in found)
+        if self.workers.save_every_s is None:
+            if going_on:
+                runs = (
+                    "1 unfinished run has a saved state"
+                    if going_on == 1
+                    else f"{going_on} unfinished runs have saved states"
+                )
+                log.warning("%s: give --save-states to continue %s", runs, "it" if going_on == 1 else "them")
+            return
+        if self.run_settings is not None and not self.run_settings.saves_states:
+            log.warning("--save-states: %s is a Python file, whose runs cannot be saved", self.simulator_binary)
+            return
         if going_on:
             tell(f"{going_on} of {len(waiting)} runs go on from their states, in {self.temporary.saved}")
         if others := len(found) - going_on:

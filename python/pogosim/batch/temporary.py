@@ -44,6 +44,14 @@ class TemporaryFolder:
         """The folder of unfinished runs that go on from their states."""
         return self.path / f"sim_saved_{self.batch}"
 
+    def kept(self) -> str:
+        """Return what an ended batch has left: "2 finished runs and the state of 1 unfinished run"; empty: nothing."""
+        finished = sum(1 for _ in self.done.glob("*.feather"))
+        states = sum(path.stat().st_size > 0 for path in self.saved.glob("*/*.state"))
+        runs = f"{finished} finished run{'' if finished == 1 else 's'}" if finished else ""
+        unfinished = "the state of 1 unfinished run" if states == 1 else f"the states of {states} unfinished runs"
+        return " and ".join(text for text in (runs, unfinished if states else "") if text)
+
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
         """Keep other batches from using the same folder of finished runs meanwhile.
