@@ -101,10 +101,10 @@ def without_folder(result: Run) -> str:
     return "\n".join(sorted(line for line in lines if "/tmp/sim_" not in line))  # warnings come as runs end
 
 
-def said_how(folder: Path, runs: Path) -> str:
+def said_how(folder: Path, runs: Path, *more: str) -> str:
     """Return what a batch says of how it does its runs."""
     write_options(folder)
-    result = batch(folder, "-r", "2", "-v", program=runs)
+    result = batch(folder, "-r", "2", "-v", *more, program=runs)
     assert result.code == 0, result.errors
     (line,) = (line for line in result.errors.splitlines() if IN_PLACE in line or COPIES in line or ALONE in line)
     return line.partition(": ")[2]
@@ -149,6 +149,11 @@ def test_program_that_does_something_before_main_has_a_process_for_each_run(cons
     runs = program(tmp_path, includes=constructor)
     assert said_how(tmp_path / "how", runs) == f"{ALONE}{runs} cannot do several"
     check_same(tmp_path, *both_ways(tmp_path, runs))
+
+
+@pytest.mark.parametrize("options", [["--isolated"], ["--save-states"], ["--keep-temp"], ["--isolated", "--keep-temp"]])
+def test_options_that_ask_for_a_process_for_each_run_are_said(options: list[str], tmp_path: Path) -> None:
+    assert said_how(tmp_path, example("helloworld"), *options) == f"{ALONE}{', '.join(options)}"
 
 
 AT_END = {

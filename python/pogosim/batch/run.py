@@ -57,8 +57,19 @@ class RunSettings:
     @property
     def may_share_process(self) -> bool:
         """Whether several runs may be done by one process."""
-        is_alone = self.is_isolated or self.gui or self.saves_states
-        return not (is_alone or self.temporary.is_kept or self.program.suffix == PYTHON)
+        return not self.why_alone
+
+    @property
+    def why_alone(self) -> str:
+        """Why each run is a process of its own, whatever the program does; empty: nothing asks for it."""
+        reasons = {
+            "its program is a Python file": self.program.suffix == PYTHON,
+            "--isolated": self.is_isolated,
+            "--save-states": self.saves_states,
+            "--keep-temp": self.temporary.is_kept,
+            "--gui": self.gui,
+        }
+        return ", ".join(reason for reason, applies in reasons.items() if applies)
 
     @property
     def saves_states(self) -> bool:

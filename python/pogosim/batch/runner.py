@@ -322,6 +322,8 @@ class PogobotBatchRunner:
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
         self.tell_of_states(waiting)
+        if waiting and (why := waiting[0].settings.why_alone):
+            log.debug("each run is a process of its own: %s", why)
         with self.workers.opened() as do:
             outcomes = do(waiting)
             if not done:
