@@ -19,6 +19,7 @@ import numpy as np
 import pogosim
 import pytest
 from PIL import Image
+from pogosim.simulation.library import in_words_of_python
 from pogosim.utils import load_dataframe
 from running import PROGRAMS, ROOT, SHARED, compile_program, compiler, example, run, write_scene
 
@@ -194,8 +195,8 @@ def test_parameters_that_a_map_gave_are_among_those_that_were_set(hosted: Path, 
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("gain", "fast", r"--set: parameters.gain: expected a number.*, found 'fast'"),
-        ("table", [1.0], r"--set: parameters.table: expected a list of at least 2 numbers, found 1"),
+        ("gain", "fast", r"^set: parameters.gain: expected a number.*, found 'fast'"),
+        ("table", [1.0], r"^set: parameters.table: expected a list of at least 2 numbers, found 1"),
         ("gian", 1.0, r"parameters.gian: the program has not read it into a global variable or USERDATA"),
         ("local", 1.0, r"parameters.local: the program has not read it into a global variable or USERDATA"),
     ],
@@ -359,6 +360,19 @@ def test_warning_is_not_repeated_after_each_reset(hosted: Path, scene: Path, cap
     lines = [message for name, _, message in caplog.record_tuples if name == "pogosim"]
     assert sum("parameters never read" in line for line in lines) == 1
     assert caplog.text.count("hello from 2") == 4
+
+
+def test_messages_speak_of_the_argument_not_of_options(
+    hosted: Path, scene: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    settings = {"parameters.gian": 3, "objects.robots.raduis": 3}
+    pogosim.Simulation(hosted, scene, set=settings).close()
+    assert "set: unknown key 'objects.robots.raduis' is ignored" in caplog.text
+    assert "parameters never read by the program: gian (set" in caplog.text
+    assert "--set" not in caplog.text
+    assert in_words_of_python("a (--set) and 6 more (-v lists them)") == "a (set) and 6 more"
+    with pytest.raises(pogosim.ConfigurationError, match=r"^set: seed: .*\nset: objects\.robots\.nb: "):
+        pogosim.Simulation(hosted, scene, set={"objects.robots.nb": "x", "seed": -4})
 
 
 def test_warning_of_many_runs_is_passed_on_once(hosted: Path, scene: Path, caplog: pytest.LogCaptureFixture) -> None:

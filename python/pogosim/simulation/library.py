@@ -10,6 +10,7 @@ import ctypes
 import functools
 import logging
 import os
+import re
 import signal
 import sys
 import threading
@@ -225,7 +226,16 @@ def check(status: int) -> int:
 def error_of(status: int, message: bytes) -> SimulationError:
     """Return the error that a status of the library stands for."""
     kind = ProgramFailedError if status == PROGRAM_FAILED else ConfigurationError
-    return kind(printable_lines(message.decode("utf-8", "replace")))
+    return kind(printable_lines(in_words_of_python(message.decode("utf-8", "replace"))))
+
+
+def in_words_of_python(text: str) -> str:
+    """Return a message of the simulator, which names options of the command line, with the argument `set` instead.
+
+    A hint at the option -v is left out: Python has none.
+    """
+    text = re.sub(r"^--set: ", "set: ", text, flags=re.MULTILINE)
+    return text.replace("(--set)", "(set)").replace("(--set;", "(set;").replace(" (-v lists them)", "")
 
 
 def error_of_step(status: int, message: bytes) -> SimulationError:

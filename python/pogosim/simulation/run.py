@@ -26,7 +26,7 @@ from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process,
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
-from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, library
+from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, in_words_of_python, library
 from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
@@ -875,7 +875,7 @@ class Simulation:
             if line[:1] == "P":
                 robot_logger.info("%s", line[1:])
             elif line[:1] != "W" or self._current.is_new(line):
-                logger.log(LEVELS.get(line[:1], logging.INFO), "%s", line[1:])
+                logger.log(LEVELS.get(line[:1], logging.INFO), "%s", in_words_of_python(line[1:]))
 
 
 def checked_seed(seed: Any) -> int | None:
