@@ -262,8 +262,8 @@ int pogosim_run_take_turn(pogosim_run* run, struct pogosim_turn* turn, double bu
 int pogosim_threads_open(int count, pogosim_threads** threads);
 
 /// Many runs make the steps that are left, as many at a time as there are threads, each by pogosim_run_step(). No run
-/// begins a further step after `budget_s` seconds (infinity: no limit), but each makes at least one. The call fails with
-/// the first run that fails in it; the others go on nevertheless. A run may be given only once.
+/// begins a further step after `budget_s` seconds (infinity: no limit), but each makes at least one. The call fails
+/// with the first run that fails in it; the others go on nevertheless. A run may be given only once.
 int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, struct pogosim_turn* turns, size_t count,
                          double budget_s);
 

@@ -91,7 +91,8 @@ def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, A
     except DAMAGED as error:
         raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
     metadata = parsed_metadata(table.schema)
-    if warns and not are_of_runs(metadata) and format_in(path) != CSV:  # reading a CSV file tells of it already
+    is_told_of = format_in(path) == CSV  # when it was read
+    if warns and not is_told_of and not are_of_runs(metadata_of(table.schema)):
         warn_of_no_metadata(path)
     if "arena_polygons" in metadata:
         metadata["arena_polygons"] = in_millimetres(metadata["arena_polygons"], rows)

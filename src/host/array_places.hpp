@@ -18,7 +18,7 @@ namespace pogosim {
 
 static_assert(std::endian::native == std::endian::little, "array types are named for little-endian machines");
 
-/// Of numbers: "<f4".
+/// The type of numbers, as NumPy writes it: "<f4".
 template <class T>
 std::string_view type_of() {
     constexpr char kKind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';

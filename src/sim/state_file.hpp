@@ -41,8 +41,9 @@ struct RunIdentity {
     }
 };
 
-/// Of a run that has not begun. What it has read from files is taken as it was read: the files may change during the
-/// run. `inputs`: the InputHash of its world. Scripts, robot models and costs are in the configuration, word for word.
+/// The identity of a run that has not begun. What it has read from files is taken as it was read: the files may change
+/// during the run. `inputs`: the InputHash of its world. Scripts, robot models and costs are in the configuration, word
+/// for word.
 RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world, Brains const& brains,
                         std::uint64_t inputs);
 

@@ -46,7 +46,7 @@ from pogosim.far_away import is_far, warn_of_far
 from pogosim.recover import DAMAGED
 from pogosim.run_columns import may_be_one_run
 from pogosim.table_formats import CSV, PARQUET, format_in
-from pogosim.table_metadata import are_of_runs
+from pogosim.table_metadata import are_of_runs, metadata_of
 from pogosim.utils import parsed_metadata, positions_within, scaled, warn_of_no_metadata
 from pogosim.varied import OBJECTS
 
@@ -354,7 +354,7 @@ def runs_of(path: Path, category: str | None = None, expect: Callable[[int], Non
     if expect is not None:
         expect(file.count)
     metadata = parsed_metadata(file.schema)
-    if not are_of_runs(metadata):
+    if not are_of_runs(metadata_of(file.schema)):
         warn_of_no_metadata(path)
     selection = selection_of(file, metadata, category)
     names = selection.labels
