@@ -182,9 +182,13 @@ std::shared_ptr<SavedState const> take_state(Scenario& scenario, CommandLine con
         return nullptr;
     }
     auto saved = std::make_shared<SavedState>(read_state(options.from_state));
-    if (options.seed && *options.seed != saved->seed) {
-        throw ConfigError(fmt::format("--from-state: '{}' is of a run with seed {}, not {}: leave out --seed",
-                                      options.from_state, saved->seed, *options.seed));
+    bool const is_set =
+        std::ranges::any_of(options.overrides, [](auto const& own) { return own.starts_with("seed="); });
+    std::optional<std::uint32_t> const wanted = options.seed ? options.seed : is_set ? scenario.seed : std::nullopt;
+    if (wanted && *wanted != saved->seed) {
+        throw ConfigError(fmt::format("--from-state: '{}' is of a run with seed {}, not {}: leave out {}",
+                                      options.from_state, saved->seed, *wanted,
+                                      options.seed ? "--seed" : "--set seed"));
     }
     scenario.seed = saved->seed;
     return saved;
@@ -222,6 +226,7 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
         scenario.seed = options.seed;
     }
     problems.collect([&] { check_needs_no_host(scenario); });
+    problems.collect([&] { take_state(scenario, options); });
     CheckResult const result = check_run(linked_program(program, process_name()), scenario, check_options, problems);
     flush_logs();
     if (result.interrupted) {

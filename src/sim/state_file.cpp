@@ -276,8 +276,8 @@ void check_identity(SavedState const& saved, RunIdentity const& identity) {
                           : fmt::format("is of another build of '{}': go on with that executable", before.program));
     }
     if (before.configuration != identity.configuration) {
-        refuse(saved, fmt::format("is of another configuration: {}. Only simulation_time, seed and what is written "
-                                  "and shown may differ",
+        refuse(saved, fmt::format("is of another configuration: {}. Only simulation_time, user_code_timeout, "
+                                  "threads and what is written and shown may differ",
                                   difference(before.configuration, identity.configuration)));
     }
     if (before.files != identity.files) {

@@ -430,6 +430,7 @@ def test_other_runs_are_refused_with_what_differs(saved: tuple[Path, Path], tmp_
     assert "'parameters: a: 1' is new" in why({"parameters": {"a": 1}})
     assert "'time_step: 0.01' then, and 'time_step: 0.005' now" in why({"time_step": 0.005})
     assert "is of a run with seed 1, not 2: leave out --seed" in why({}, "-s", "2")
+    assert "is of a run with seed 1, not 2: leave out --set seed" in why({}, "--set", "seed=2")
     assert "is of t = 0.5 s, and simulation_time is 0.5 s: set a longer one" in why({"simulation_time": 0.5})
     assert "--at 0.2 is before that" in why({}, "--save-state", "y", "--at", "0.2")
     other = program_of(tmp_path / "other", "pogobot_led_setColor(1, 2, 3);")
@@ -510,7 +511,8 @@ def test_files_that_are_no_states_are_refused(saved: tuple[Path, Path], tmp_path
         damaged[chance.randrange(30, len(good))] ^= 1 << chance.randrange(8)
         assert "'x' is damaged" in why(bytes(damaged))
     (folder / "x").unlink()
-    assert "'x' does not exist" in refused(program, folder, {}, "--from-state", "x")
+    for more in ((), ("--check-config",)):
+        assert "'x' does not exist" in refused(program, folder, {}, "--from-state", "x", *more)
 
 
 def test_files_that_would_be_lost_are_not_overwritten(tmp_path: Path) -> None:
