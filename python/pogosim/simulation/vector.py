@@ -355,6 +355,7 @@ class VectorSimulation:
     @property
     def is_over(self) -> npt.NDArray[np.bool_]:
         """Which runs are over. Shape (runs,)."""
+        check_process(self._process)
         if self._is_closed or any(simulation._current.run is None for simulation in self.simulations):
             return np.array([simulation.is_over for simulation in self.simulations])
         over = np.empty(len(self.simulations))
