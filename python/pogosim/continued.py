@@ -181,7 +181,14 @@ def with_joined_parts(files: Sequence[Loaded], configurations: Sequence[Mapping[
 
 
 def joined_in_group(files: Mapping[int, Loaded]) -> dict[int, Loaded]:
-    """Join the parts among the files of one configuration; those of each run get the number of its first file."""
+    """Join the parts among the files of one configuration; those of each run get the number of its first file.
+
+    Where there are parts, a file that is given twice counts once.
+    """
+    if not any(goes_on(metadata) for _, _, metadata in files.values()):
+        return dict(files)
+    first = {path.resolve(): number for number, (path, _, _) in reversed(files.items())}
+    files = {number: files[number] for number in sorted(first.values())}
     numbers = list(files)
     by_rows = any(counts_rows(metadata) for _, _, metadata in files.values())
     parts = []

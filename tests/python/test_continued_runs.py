@@ -116,6 +116,15 @@ def test_parts_of_a_run_are_read_as_one_run(folder: Path) -> None:
     assert alone["time"].min() > 4.0
 
 
+def test_part_that_is_given_twice_counts_once(folder: Path) -> None:
+    (whole,) = (folder / "whole").glob(ONE_FILE)
+    parts = folder / "parts"
+    files = [parts / f"data.1{whole.suffix}", parts / f"data.2{whole.suffix}", parts / whole.name]
+    for again in files:
+        rows, metadata = load_dataframe([*files, parts / ".." / "parts" / again.name])
+        expect_one_run(rows, metadata, whole)
+
+
 def test_message_logs_of_parts_are_read_as_one(tmp_path: Path) -> None:
     make_runs(tmp_path, "feather")
     expect_one_run(*load_dataframe(tmp_path / "parts" / "log*.feather"), tmp_path / "whole" / "log.feather")
