@@ -36,7 +36,7 @@ struct Work {
 };
 
 double seconds_until(Deadline when) {
-    return (when - Clock::now()).count();
+    return std::chrono::duration<double>(when - Clock::now()).count();
 }
 
 void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {

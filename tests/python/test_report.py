@@ -382,7 +382,11 @@ def test_browser_shows_the_replay_in_the_page_and_asks_for_nothing(tmp_path: Pat
         assert place is not None
         page.mouse.move(place["x"] + 200, 650)
         page.mouse.wheel(0, 100)
-        page.wait_for_function("window.scrollY === 100")
+        for _ in range(200):  # the page forbids what wait_for_function() would evaluate
+            if page.evaluate("window.scrollY") == 100:
+                break
+            page.wait_for_timeout(50)
+        assert page.evaluate("window.scrollY") == 100
         page.emulate_media(media="print")
         assert not page.locator("iframe").is_visible()
         assert page.locator(".state img").is_visible()
