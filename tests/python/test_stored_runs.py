@@ -147,9 +147,7 @@ def test_runs_in_a_file_are_those_of_all_its_rows(file: Path, kind: str) -> None
 def test_analyses_write_the_same_bytes_wherever_the_rows_are(
     file: Path, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("pogosim.reports.figures.save", lambda *_: None)
-    for module in ("coverage", "neighbors", "arena", "traces", "heat_maps", "locomotion_figures", "collective_figures"):
-        monkeypatch.setattr(f"pogosim.reports.{module}.save", lambda *_: None)
+    monkeypatch.setattr("pogosim.reports.figures.FORMATS", ())
     monkeypatch.setattr("pogosim.reports.locomotion.draw_traces", lambda *_: None)
     printed, written = [], []
     for place in ("file", "memory"):
@@ -194,7 +192,7 @@ def test_other_files_are_read_as_a_whole(why: str, tmp_path: Path) -> None:
 
 
 def test_rows_in_another_order_have_the_same_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pogosim.reports.figures.save", lambda *_: None)
+    monkeypatch.setattr("pogosim.reports.figures.FORMATS", ())
     rows = swarm(30, 4)
     tables = []
     for name, by in (("times", ["time", "robot_id"]), ("robots", ["robot_id", "time"])):
