@@ -282,7 +282,6 @@ std::span<Key<ViewConfig> const> view_keys() {
     return keys;
 }
 
-/// The stack of so many bytes, or the least that every machine can give.
 /// True if a category has a formation of its own, which reads the keys of formations, too.
 bool has_own_formation(MapReader const& reader) {
     Node const* const objects = reader.find("objects");
@@ -321,6 +320,7 @@ void warn_without_formation(MapReader const& reader, FormationSpec const& format
     }
 }
 
+/// The stack of so many bytes, or the least that every machine can give.
 int stack_kib(std::int64_t bytes) {
     return static_cast<int>(std::max<std::int64_t>((bytes + 1023) / 1024, kLeastStackKib));
 }
