@@ -3,14 +3,13 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "base/log.hpp"
+#include "base/recent.hpp"
 #include "config/looked_up.hpp"
 
 namespace pogosim {
@@ -38,28 +37,7 @@ struct Known {
     std::vector<LogLine> lines;  // that were logged
 };
 
-std::mutex mutex;  // of what follows
-std::list<std::shared_ptr<Known const>> all_known;
-
-std::shared_ptr<Known const> find(Question const& question) {
-    std::lock_guard const lock(mutex);
-    for (auto known = all_known.begin(); known != all_known.end(); ++known) {
-        if ((*known)->question == question) {
-            all_known.splice(all_known.begin(), all_known, known);
-            return all_known.front();
-        }
-    }
-    return nullptr;
-}
-
-void keep(std::shared_ptr<Known const> const& found) {
-    std::lock_guard const lock(mutex);
-    std::erase_if(all_known, [&](auto const& known) { return known->question == found->question; });
-    all_known.push_front(found);
-    if (all_known.size() > kMostKnown) {
-        all_known.pop_back();
-    }
-}
+Recent<Known> all_known(kMostKnown);
 
 void say(std::vector<LogLine> const& lines) {
     for (LogLine const& line : lines) {
@@ -92,7 +70,8 @@ Scenario load_known_scenario(std::string const& path, LoadOptions const& options
                             .options = options,
                             .folder = std::filesystem::current_path(error),
                             .search_path = search_path != nullptr ? search_path : ""};
-    if (auto const known = find(question); known && known->files.is_still_there()) {
+    auto const asks_it = [&](Known const& known) { return known.question == question; };
+    if (auto const known = all_known.find(asks_it); known && known->files.is_still_there()) {
         say(known->lines);
         return known->scenario;
     }
@@ -104,7 +83,7 @@ Scenario load_known_scenario(std::string const& path, LoadOptions const& options
         std::rethrow_exception(failure);
     }
     if (!error && found->files.size() <= kMostBytes && found->scenario.objects.size() <= kMostObjects) {
-        keep(found);
+        all_known.keep(found, asks_it);
     }
     return found->scenario;
 }

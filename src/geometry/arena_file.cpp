@@ -4,8 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <list>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/recent.hpp"
 #include "geometry/arena.hpp"
 #include "geometry/csv_text.hpp"
 #include "geometry/outline_survey.hpp"
@@ -217,27 +217,7 @@ struct KnownOutline {
 constexpr std::size_t kMostKnown = 8;
 constexpr std::size_t kMostBytes = 1U << 16U;  // of a file: larger ones are not kept in memory
 
-std::mutex mutex_of_known;
-std::list<KnownOutline> known_outlines;  // those that were used last come first
-
-std::optional<ArenaOutline> known_outline(std::string_view text, std::string const& source) {
-    std::lock_guard const lock(mutex_of_known);
-    for (auto known = known_outlines.begin(); known != known_outlines.end(); ++known) {
-        if (known->outline.source == source && known->text == text) {
-            known_outlines.splice(known_outlines.begin(), known_outlines, known);
-            return known->outline;
-        }
-    }
-    return std::nullopt;
-}
-
-void keep_outline(std::string text, ArenaOutline const& outline) {
-    std::lock_guard const lock(mutex_of_known);
-    known_outlines.push_front({.text = std::move(text), .outline = outline});
-    if (known_outlines.size() > kMostKnown) {
-        known_outlines.pop_back();
-    }
-}
+Recent<KnownOutline> known_outlines(kMostKnown);
 
 }  // namespace
 
@@ -248,13 +228,17 @@ bool is_empty_arena_file(std::filesystem::path const& path) {
 }
 
 ArenaOutline read_arena_file(std::filesystem::path const& path) {
-    std::string text = read_text(path);
-    if (std::optional<ArenaOutline> known = known_outline(text, path.string())) {
-        return *std::move(known);
+    std::string const text = read_text(path);
+    auto const is_this = [&](KnownOutline const& known) {
+        return known.outline.source == path.string() && known.text == text;
+    };
+    if (auto const known = known_outlines.find(is_this)) {
+        return known->outline;
     }
     ArenaOutline outline = outline_in(text, path);
     if (text.size() <= kMostBytes) {
-        keep_outline(std::move(text), outline);
+        known_outlines.keep(std::make_shared<KnownOutline const>(KnownOutline{.text = text, .outline = outline}),
+                            is_this);
     }
     return outline;
 }
