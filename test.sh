@@ -3,25 +3,29 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-usage="Usage: ./test.sh [--quick] [--tidy]
+usage="Usage: ./test.sh [--quick | --style] [--tidy]
 
 Builds Release with the system's compiler and runs the C++ tests (CTest) and the Python tests (pytest); builds Debug
 with clang and sanitizers and runs the C++ tests again; checks formatting (clang-format, ruff), Python style (ruff) and
 types (mypy).
   --quick      run the Release build and its tests only
+  --style      check formatting, Python style and types only: a minute, nothing is built
   --tidy       also run clang-tidy on the C++ sources (slow)
   -h, --help   print this help"
 
 quick=no
+style=no
 needs="test"
 for argument in "$@"; do
     case $argument in
         --quick) quick=yes ;;
+        --style) style=yes ;;
         --tidy) needs=tidy ;;
         -h | --help) echo "$usage" && exit 0 ;;
         *) echo "$usage" >&2 && exit 2 ;;
     esac
 done
+[ "$quick$style" != yesyes ] || { echo "$usage" >&2 && exit 2; }
 
 . scripts/bootstrap.sh
 bootstrap "$needs"
@@ -162,12 +166,12 @@ style_checks() {
         "$python" -m mypy --config-file pyproject.toml $sources || true
 }
 
-release_tests
-python_tests
-if [ "$quick" = no ]; then
-    sanitized_tests
-    style_checks
+if [ "$style" = no ]; then
+    release_tests
+    python_tests
+    [ "$quick" = yes ] || sanitized_tests
 fi
+[ "$quick" = yes ] || style_checks
 if [ "$needs" = tidy ]; then
     check "clang-tidy" clang_tidy || true
 fi

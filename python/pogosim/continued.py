@@ -187,7 +187,9 @@ def joined_in_group(files: Mapping[int, Loaded]) -> dict[int, Loaded]:
     """
     if not any(goes_on(metadata) for _, _, metadata in files.values()):
         return dict(files)
-    first = {path.resolve(): number for number, (path, _, _) in reversed(files.items())}
+    first: dict[Path, int] = {}
+    for number, (path, _, _) in files.items():
+        first.setdefault(path.resolve(), number)
     files = {number: files[number] for number in sorted(first.values())}
     numbers = list(files)
     by_rows = any(counts_rows(metadata) for _, _, metadata in files.values())
