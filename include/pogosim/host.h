@@ -82,7 +82,8 @@ void pogosim_run_close(pogosim_run* run);
 
 /// A number: "time" (s), "step", "step_count" (steps of the whole run), "time_step" (s), "is_over" (1: no further step
 /// will be made), "has_failed" (1: a step has failed), "seed", "object_count", "robot_count", "lamp_count",
-/// "link_count", "user_data_bytes", "save_time" (s, of the last save of rows; NaN before the first).
+/// "link_count", "part_count" (bodies of which membranes are made), "user_data_bytes", "save_time" (s, of the last save
+/// of rows; NaN before the first).
 int pogosim_run_number(pogosim_run const* run, char const* name, double* value);
 
 /// An array. Arrays of bodies (rows: bodies): "bodies.position" (n, 2) mm, "bodies.heading" (n) rad, not wrapped,
@@ -129,6 +130,10 @@ char const* pogosim_run_categories(pogosim_run const* run);
 /// Names of the columns that the program has added to the data file, a line each. Valid as long as the run.
 char const* pogosim_run_columns(pogosim_run const* run);
 
+/// What the metadata of a data file say of the run, whether it writes one or not: a JSON object of texts, such as
+/// "resolved_configuration", "objects" and "arena_polygons". Valid as long as the run.
+char const* pogosim_run_metadata(pogosim_run const* run);
+
 /// Messages since the last call, a line each, the first character says of what kind: 'D' debug, 'I' information, 'W'
 /// warning, 'E' error, 'P' printed by the program. Valid until the next call for this run.
 char const* pogosim_run_messages(pogosim_run* run);
@@ -136,6 +141,19 @@ char const* pogosim_run_messages(pogosim_run* run);
 /// Draws the world, as the configuration wants pictures (window_width and window_height apart). `rgb`: height_px x
 /// width_px x 3 bytes, row by row from the top left. Needs no display.
 int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint8_t* rgb);
+
+/// What a picture shows of a run, all of one moment. The host gives the memory; a NULL is left out.
+struct pogosim_view {
+    double time_s;
+    int64_t step;
+    float* poses;        ///< shape (objects, 3): x and y, mm; heading, rad, NaN of membranes
+    uint32_t* led_rgb;   ///< shape (objects): head LED, 0xRRGGBB; 2^32 - 1 for what runs no program
+    float* parts_mm;     ///< shape (parts, 2): x and y of the bodies of membranes, object by object
+    uint32_t* parts_of;  ///< shape (parts): index of the object that each belongs to
+};
+
+/// Looks at a run between two time steps.
+int pogosim_run_look(pogosim_run const* run, struct pogosim_view* view);
 
 /// Moves the body of a robot to another pose, at rest. mm and rad.
 int pogosim_run_set_pose(pogosim_run* run, size_t robot, double x_mm, double y_mm, double heading_rad);
@@ -166,6 +184,10 @@ int pogosim_run_object(pogosim_run const* run, size_t object, struct pogosim_obj
 
 /// Puts an object elsewhere, at rest. mm and rad.
 int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, double y_mm, double heading_rad);
+
+/// Moves an object to the free place nearest to a point, mm, where it stands still until its motors or others move it;
+/// `is_moved`: 0: it stays where it is. As a user's hand does, and as that is told in the metadata of the data file.
+int pogosim_run_drag_object(pogosim_run* run, size_t object, double x_mm, double y_mm, int* is_moved);
 
 /// Switches an object that runs the program off (0) or on, see pogosim_world_set_alive() in world.h.
 int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive);

@@ -44,6 +44,7 @@ constexpr std::array kNumbers{
     NamedNumber{"robot_count", [](pogosim_run const& run) { return number(run.simulation().world().robots.size()); }},
     NamedNumber{"lamp_count", [](pogosim_run const& run) { return number(run.simulation().world().lamps.size()); }},
     NamedNumber{"link_count", [](pogosim_run const& run) { return number(run.simulation().world().links.size()); }},
+    NamedNumber{"part_count", [](pogosim_run const& run) { return number(part_count(run.simulation().world())); }},
     NamedNumber{"user_data_bytes",
                 [](pogosim_run const& run) { return number(run.simulation().controllers().user_data_bytes()); }},
 };

@@ -60,6 +60,7 @@ public:
 
     std::uint64_t const number;  // no other run of this process has it
     pogosim::FairMutex mutable in_use;
+    std::string mutable metadata;  // empty until it is asked for
 
 private:
     std::int64_t make_steps(std::int64_t steps, double budget_s);
@@ -90,6 +91,9 @@ std::optional<double> number_of(pogosim_run const& run, std::string_view name);
 
 /// The array of this name; nothing if there is none.
 std::optional<pogosim_array> array_of(Simulation const& simulation, std::string_view name);
+
+/// How many bodies membranes are made of.
+std::size_t part_count(World const& world);
 
 /// An array of a category that this process drives. Throws ConfigError if there is none.
 pogosim_array brain_array_of(pogosim_run& run, std::string_view category, std::string_view name);

@@ -77,6 +77,9 @@ public:
     /// Goes on in this world behind the rows that a run had before. Throws ForeignState.
     void take_state(StateReader& state);
 
+    /// What the metadata of the files say of the run.
+    std::vector<std::pair<std::string, std::string>> metadata() const;
+
     /// Rows of the data file so far; none if there is no data file.
     std::optional<std::int64_t> row_count() const;
 
@@ -89,7 +92,6 @@ public:
 
 private:
     OutputConfig const& output() const { return scenario_.output; }
-    std::vector<std::pair<std::string, std::string>> metadata() const;
     void make_data_file();
     void open_message_log();
     /// The rows of all objects, also of those before the one whose code fails.

@@ -208,6 +208,9 @@ public:
     void keep_columns() { recorder_.keep(&saved_columns_); }
     SavedColumns const& saved_columns() const { return saved_columns_; }
 
+    /// What the metadata of a data file say of this run, see run_metadata() in recorder.cpp.
+    std::vector<std::pair<std::string, std::string>> metadata() const { return recorder_.metadata(); }
+
     // Actions of the user in the window, between two steps. The data file says that the run was touched.
 
     /// Calls callback_robot_click of a robot, if it has one.

@@ -11,8 +11,8 @@ from running import ROOT
 
 @pytest.fixture(scope="module")
 def weights_and_limit() -> list[float]:
-    """Weights of red, green and blue in replay.js, and the limit."""
-    script = (ROOT / "python" / "pogosim" / "film" / "replay.js").read_text()
+    """Weights of red, green and blue in painter.js, and the limit."""
+    script = (ROOT / "python" / "pogosim" / "view" / "painter.js").read_text()
     (formula,) = re.findall(r"brightness\.set\(colour, (.*)\);", script)
     factor = r"([\d.]+) \* "
     channels = [r"\(value >> 16\)", r"\(\(value >> 8\) & 255\)", r"\(value & 255\)"]

@@ -14,7 +14,7 @@ from pogosim.picture.body_links import PlacedLinks
 from pogosim.picture.images import Box, lines_between, seen_places
 from pogosim.picture.palette import PALETTE, tension_colours
 
-BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in replay.js
+BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in painter.js
 
 
 def number(value: float) -> str:

@@ -1,7 +1,7 @@
 """Tables of a run as few bytes: numbers as 16 bits, steps in time, then deflate.
 
 A table of shape (t, n) is stored object by object as differences from one time to the next, modulo 65536; low bytes
-first, then high bytes, which are mostly equal. Readers of the page undo it, see replay.js.
+first, then high bytes, which are mostly equal. Readers of the page undo it, see recorded_run.js.
 """
 
 from __future__ import annotations

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import html
 import json
 import math
 from pathlib import Path
@@ -19,7 +18,6 @@ from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, qua
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.lines import counted
 from pogosim.outputs import partial_output
-from pogosim.pages import filled
 from pogosim.picture import layers
 from pogosim.picture.body_links import ARENA, LEAST_TENSION_N, N_PER_MM, PlacedLinks, placed_links
 from pogosim.picture.colouring import scale_of
@@ -30,12 +28,15 @@ from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
 from pogosim.scene import Kind
 from pogosim.shapes import Shape
+from pogosim.view import assets
 
 FOLDER = Path(__file__).parent
 OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, KIND, "led_rgb", *RGB}
 LIGHT_CELLS = 144
 MAX_LIGHTS = 100  # pictures of lamps that move
 DEFAULT_TAIL_S = 5.0
+KEYS = {"\u2190 \u2192": "previous and next record; with shift: ten"}
+WITHOUT = "This is the first picture. To replay the run, allow JavaScript for this page."
 
 
 def write_replay(
@@ -83,19 +84,20 @@ def replay_page(
 
 
 def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:
-    """Join page, style, first picture, program and data."""
+    """Join elements, style, first picture, program and data."""
     text = json.dumps(head, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    parts = {
-        "@@TITLE@@": html.escape(f"{name} \u2013 Pogosim"),
-        "@@HEADING@@": html.escape(head["title"]),
-        "@@CLOCK@@": f"{head['times'][0]:.2f} s",
-        "@@PICTURE@@": picture,
-        "@@STYLE@@": (FOLDER / "replay.css").read_text(encoding="utf-8"),
-        "@@SCRIPT@@": (FOLDER / "replay.js").read_text(encoding="utf-8"),
-        "@@HEAD@@": text,
-        "@@DATA@@": data,
-    }
-    return filled((FOLDER / "replay.html").read_text(encoding="utf-8"), parts)
+    body = [
+        assets.elements(KEYS, head["title"], f"{head['times'][0]:.2f} s", picture, WITHOUT),
+        f'<script type="application/json" id="head">{text}</script>',
+        f'<script type="text/plain" id="data">{data}</script>',
+        f"<script>\n{replay_program()}\n</script>",
+    ]
+    return assets.page(f"{name} \u2013 Pogosim", assets.text_of("view.css"), "\n".join(body))
+
+
+def replay_program() -> str:
+    """Return the program that shows a run in its page."""
+    return assets.program(assets.text_of("recorded_run.js"), (FOLDER / "replay.js").read_text(encoding="utf-8"))
 
 
 def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, str, list[str]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from pogosim.lines import printable
 from pogosim.pages import data_uri, filled
 from pogosim.run_report.figures import Shown
+from pogosim.view import assets
 
 FOLDER = Path(__file__).parent
 
@@ -53,7 +54,6 @@ def page_of(report: Report) -> str:
     """Return the page."""
     parts = {
         "@@TITLE@@": text(report.title),
-        "@@STYLE@@": (FOLDER / "report.css").read_text(encoding="utf-8"),
         "@@LEAD@@": text(report.lead),
         "@@WARNINGS@@": warnings_part(report.warnings),
         "@@FACTS@@": facts_part(report.facts),
@@ -64,7 +64,8 @@ def page_of(report: Report) -> str:
         "@@CONFIGURATION@@": configuration_part(report),
         "@@FOOTER@@": text(report.footer),
     }
-    return filled((FOLDER / "report.html").read_text(encoding="utf-8"), parts)
+    style, body = ((FOLDER / name).read_text(encoding="utf-8") for name in ("report.css", "report.html"))
+    return assets.page(printable(report.title), style, filled(body, parts))
 
 
 def note(value: str) -> str:

@@ -1,0 +1,475 @@
+// Draws a run at one moment: the arena, its light and its objects.
+
+const GLOW = 1.75;  // radius of a glow, in radii of its robot
+const MAX_SPRITE = 48;  // pixels of a radius
+const MAX_SPRITES = 2000;
+
+function pathOf(path, line) {
+    line.forEach(([x, y], i) => i ? path.lineTo(x, y) : path.moveTo(x, y));
+    path.closePath();
+}
+
+// view: run, canvas, camera, poses of the objects now, and the state: what is chosen to be seen, and when.
+function makePainter({run, canvas, camera, poses, state}) {
+const {head, space} = run;
+const {palette} = head;
+const pen = canvas.getContext("2d");
+const count = head.objects.length;
+const categoryOf = (object) => head.categories[head.objects[object][0]];
+const floor = new Path2D();
+head.polygons.forEach((line) => pathOf(floor, line));
+
+const glows = new Map();
+
+function glowOf(colour) {
+    if (!glows.has(colour)) {
+        const sprite = new OffscreenCanvas(64, 64);
+        const ink = sprite.getContext("2d");
+        const gradient = ink.createRadialGradient(32, 32, 32 / GLOW, 32, 32, 32);
+        gradient.addColorStop(0, colour + "55");
+        gradient.addColorStop(0.45, colour + "22");
+        gradient.addColorStop(1, colour + "00");
+        ink.fillStyle = gradient;
+        ink.fillRect(0, 0, 64, 64);
+        glows.set(colour, sprite.transferToImageBitmap());
+    }
+    return glows.get(colour);
+}
+
+const brightness = new Map();
+
+function isBright(colour) {
+    if (!brightness.has(colour)) {
+        const value = parseInt(colour.slice(1), 16);
+        brightness.set(colour, 0.299 * (value >> 16) + 0.587 * ((value >> 8) & 255) + 0.114 * (value & 255) > 64);
+    }
+    return brightness.get(colour);
+}
+
+// The colour of an object now. What has no LED is blue-grey, as where a column has no value.
+const colourOf = (object) =>
+    state.colouring.led && categoryOf(object).passive ? palette.no_led : state.colouring.colour(object, state.index);
+
+function drawFloor() {
+    pen.fillStyle = palette.floor;
+    pen.fill(floor, "evenodd");
+    const light = run.lightAt(state.index);
+    if (light) pen.drawImage(light, space.low[0], space.low[1], space.size[0], space.size[1]);
+}
+
+function drawWalls() {
+    for (const wall of head.walls) {
+        const colour = run.wallColour(wall, state.index);
+        const lines = new Path2D();
+        wall.lines.forEach((line) => pathOf(lines, line));
+        pen.strokeStyle = colour;
+        for (const [width, opacity] of [[22, 0.10], [15, 0.16], [8, 0.28], [2.4, 1]]) {
+            pen.globalAlpha = opacity;
+            pen.lineWidth = width / camera.scale;
+            pen.stroke(lines);
+        }
+        pen.globalAlpha = 1;
+    }
+}
+
+function drawLamps() {
+    for (const {centre, orbit} of head.lamps) {
+        const angle = orbit[2] + orbit[1] * state.time;
+        const x = centre[0] + orbit[0] * Math.cos(angle), y = centre[1] + orbit[0] * Math.sin(angle);
+        const radius = 5 / camera.scale;
+        pen.fillStyle = pen.strokeStyle = palette.lamp;
+        pen.lineWidth = 1.5 / camera.scale;
+        pen.beginPath();
+        pen.arc(x, y, radius, 0, 2 * Math.PI);
+        pen.fill();
+        pen.beginPath();
+        for (let ray = 0; ray < 8; ray++) {
+            const [dx, dy] = [Math.cos(ray * Math.PI / 4), Math.sin(ray * Math.PI / 4)];
+            pen.moveTo(x + 1.4 * radius * dx, y + 1.4 * radius * dy);
+            pen.lineTo(x + 2.1 * radius * dx, y + 2.1 * radius * dy);
+        }
+        pen.stroke();
+    }
+}
+
+// Each trail in a few pieces, every one in the colour of its time, fading into the past.
+function drawTrails() {
+    const start = run.track.indexAt(Math.max(state.time - state.tail, run.firstTime));
+    if (state.index <= start) return;
+    const pieces = Math.min(count > 300 ? 5 : 12, state.index - start);
+    const stride = Math.max(1, Math.round((state.index - start) / (count > 300 ? 25 : 120)));
+    pen.lineCap = pen.lineJoin = "round";
+    for (let piece = 0; piece < pieces; piece++) {
+        const from = start + Math.floor((state.index - start) * piece / pieces);
+        const to = start + Math.floor((state.index - start) * (piece + 1) / pieces);
+        const freshness = (piece + 1) / pieces;
+        const paths = new Map();  // by colour
+        for (let object = 0; object < count; object++) {
+            if (categoryOf(object).membrane) continue;
+            const colour = state.colouring.colour(object, to);
+            if (!paths.has(colour)) paths.set(colour, new Path2D());
+            const path = paths.get(colour);
+            let [x, y] = [NaN, NaN];
+            const lead = (toX, toY) => {
+                if (Math.abs(toX - x) <= space.size[0] / 2 && Math.abs(toY - y) <= space.size[1] / 2) {
+                    path.lineTo(toX, toY);
+                } else if (space.isPeriodic && x === x && toX === toX) {  // across the border: one line from either end
+                    const [dx, dy] = space.nearestImage(toX - x, toY - y);
+                    path.lineTo(x + dx, y + dy);
+                    path.moveTo(toX - dx, toY - dy);
+                    path.lineTo(toX, toY);
+                } else {
+                    path.moveTo(toX, toY);
+                }
+                [x, y] = [toX, toY];
+            };
+            for (let i = from; i < to; i += stride) lead(run.track.x(object, i), run.track.y(object, i));
+            lead(run.track.x(object, to), run.track.y(object, to));
+            if (piece === pieces - 1) lead(poses[object].x, poses[object].y);
+        }
+        pen.globalAlpha = 0.05 + 0.7 * freshness ** 2;
+        pen.lineWidth = (0.8 + freshness) / camera.scale;
+        for (const [colour, path] of paths) {
+            pen.strokeStyle = colour;
+            pen.stroke(path);
+        }
+    }
+    pen.globalAlpha = 1;
+}
+
+// Pairs of robots near enough to hear each other: max(range of a, range of b) + radius of a + radius of b.
+function linkedPairs() {
+    const talkers = [];
+    let furthest = 0;
+    for (let object = 0; object < count; object++) {
+        const own = categoryOf(object);
+        if (!own.talks || !(poses[object].x === poses[object].x)) continue;
+        talkers.push(object);
+        if (own.range > 0) furthest = Math.max(furthest, own.range);
+    }
+    if (furthest <= 0) return [];
+    const reach = furthest + 2 * Math.max(...head.categories.filter((own) => own.talks).map((own) => own.radius));
+    const cells = [0, 1].map((axis) => Math.max(1, Math.min(Math.floor(space.size[axis] / reach), 1000)));
+    const place = (value, axis) =>
+        Math.min(Math.max(Math.floor((value - space.low[axis]) / space.size[axis] * cells[axis]), 0), cells[axis] - 1);
+    const grid = new Map();
+    const pairs = [];
+    for (const object of talkers) {
+        const {x, y} = poses[object];
+        const [column, row] = [place(x, 0), place(y, 1)];
+        const seen = new Set();
+        for (let i = -1; i <= 1; i++) {
+            for (let j = -1; j <= 1; j++) {
+                let [c, r] = [column + i, row + j];
+                if (space.isPeriodic) [c, r] = [(c + cells[0]) % cells[0], (r + cells[1]) % cells[1]];
+                const key = r * 4096 + c;
+                if (seen.has(key)) continue;
+                seen.add(key);
+                for (const other of grid.get(key) || []) {
+                    const [dx, dy] = space.nearestImage(poses[other].x - x, poses[other].y - y);
+                    const [a, b] = [categoryOf(object), categoryOf(other)];
+                    const range = Math.max(a.range, b.range);
+                    if (range > 0 && Math.hypot(dx, dy) <= range + a.radius + b.radius) {
+                        pairs.push({from: other, to: object, dx: -dx, dy: -dy});
+                    }
+                }
+            }
+        }
+        const key = row * 4096 + column;
+        if (!grid.has(key)) grid.set(key, []);
+        grid.get(key).push(object);
+    }
+    return pairs;
+}
+
+function drawLinks() {
+    pen.strokeStyle = palette.link_by_all_emitters;
+    pen.globalAlpha = 0.55;
+    pen.lineWidth = 1.1 / camera.scale;
+    pen.beginPath();
+    for (const {from, to, dx, dy} of linkedPairs()) {
+        const [a, b] = [poses[from], poses[to]];
+        pen.moveTo(a.x, a.y);
+        pen.lineTo(a.x + dx, a.y + dy);
+        if (Math.abs(a.x + dx - b.x) + Math.abs(a.y + dy - b.y) > 1e-3) {
+            pen.moveTo(b.x, b.y);
+            pen.lineTo(b.x - dx, b.y - dy);
+        }
+    }
+    pen.stroke();
+    pen.globalAlpha = 1;
+}
+
+function drawGlows() {
+    if (!state.colouring.led) return;
+    for (let object = 0; object < count; object++) {
+        const own = categoryOf(object), {x, y} = poses[object];
+        const colour = colourOf(object);
+        if (own.passive || own.membrane || colour === palette.dark_led || !(x === x)) continue;
+        const reach = GLOW * own.radius;
+        space.forEachImage(x, y, reach, (dx, dy) =>
+            pen.drawImage(glowOf(colour), x + dx - reach, y + dy - reach, 2 * reach, 2 * reach));
+    }
+}
+
+function drawMembranes() {
+    if (!run.dots) return;
+    const at = run.dots.indexAt(state.time), share = run.dots.shareAt(state.time, at);
+    const pose = {};
+    for (const group of head.membranes.groups) {
+        const places = [];  // from dot to dot on the shortest way, maybe out of the arena
+        for (let i = 0; i < group.count; i++) {
+            run.dots.at(group.first + i, at, share, pose);
+            if (!(pose.x === pose.x)) continue;
+            const [x, y] = places[places.length - 1] || [pose.x, pose.y];
+            const [dx, dy] = space.nearestImage(pose.x - x, pose.y - y);
+            places.push([x + dx, y + dy]);
+        }
+        if (!places.length) continue;
+        const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
+        const middle = [(Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2];
+        const reach = Math.max(...places.map(([x, y]) => Math.hypot(x - middle[0], y - middle[1])));
+        pen.strokeStyle = pen.fillStyle = group.object !== null ? colourOf(group.object) : palette.dark_led;
+        pen.lineJoin = "round";
+        pen.lineWidth = 2 * group.half_thickness * (group.segments ? 1 : 1 / 3);
+        space.forEachImage(...middle, reach + group.half_thickness, (dx, dy) => {
+            const line = new Path2D();
+            pathOf(line, places.map(([x, y]) => [x + dx, y + dy]));
+            pen.globalAlpha = 0.5;
+            pen.stroke(line);
+            pen.globalAlpha = 1;
+            for (const [x, y] of places) {
+                pen.beginPath();
+                pen.arc(x + dx, y + dy, group.half_thickness * (group.segments ? 0.35 : 1), 0, 2 * Math.PI);
+                pen.fill();
+            }
+        });
+    }
+}
+
+function bodyPath(own, x, y, angle, scale = 1) {
+    pen.beginPath();
+    if (!own.outline) {
+        pen.arc(x, y, own.radius * scale, 0, 2 * Math.PI);
+        return;
+    }
+    const [cos, sin] = angle === angle ? [Math.cos(angle) * scale, Math.sin(angle) * scale] : [scale, 0];
+    own.outline.forEach(([u, v], i) => {
+        const [px, py] = [x + u * cos - v * sin, y + u * sin + v * cos];
+        if (i) pen.lineTo(px, py); else pen.moveTo(px, py);
+    });
+    pen.closePath();
+}
+
+// Small disks with their rims as pictures, made once for each colour and zoom; twice as fine as the screen.
+const sprites = new Map();  // by radius, then by colour
+let spriteCount = 0, spritePixel = 0;
+
+function spriteOf(colour, radius, pixel) {
+    if (pixel !== spritePixel || spriteCount >= MAX_SPRITES) {
+        sprites.clear();
+        [spriteCount, spritePixel] = [0, pixel];
+    }
+    if (!sprites.has(radius)) sprites.set(radius, new Map());
+    let sprite = sprites.get(radius).get(colour);
+    if (!sprite) {
+        const half = Math.ceil(radius / pixel) + 2;
+        const picture = new OffscreenCanvas(4 * half, 4 * half);
+        const ink = picture.getContext("2d");
+        ink.arc(2 * half, 2 * half, 2 * radius / pixel, 0, 2 * Math.PI);
+        ink.fillStyle = colour;
+        ink.fill();
+        ink.strokeStyle = palette.edge;
+        ink.lineWidth = 2 * 1.2 * (window.devicePixelRatio || 1);
+        ink.stroke();
+        sprite = {image: picture.transferToImageBitmap(), reach: half * pixel};
+        sprites.get(radius).set(colour, sprite);
+        spriteCount++;
+    }
+    return sprite;
+}
+
+function drawBodies() {
+    const pixel = 1 / camera.scale;
+    const fine = pixel / (canvas.width / Math.max(canvas.clientWidth, 1));  // pixel of the screen, mm
+    const [left, top] = camera.toArena(0, 0), [right, bottom] = camera.toArena(canvas.clientWidth, canvas.clientHeight);
+    const ticks = head.categories.map(() => [new Path2D(), new Path2D()]);  // on dark and on bright bodies
+    for (let object = 0; object < count; object++) {
+        const own = categoryOf(object), {x, y, angle} = poses[object];
+        if (!(x === x) || (own.membrane && run.dots)) continue;
+        const colour = colourOf(object);
+        const sprite = own.outline || own.membrane || own.radius > MAX_SPRITE * fine ? null
+            : spriteOf(colour, own.radius, fine);
+        const tick = ticks[head.objects[object][0]][Number(isBright(colour))];
+        space.forEachImage(x, y, own.radius, (dx, dy) => {
+            const [px, py] = [x + dx, y + dy], margin = own.radius + 12 * pixel;
+            if (px + margin < left || px - margin > right || py + margin < top || py - margin > bottom) return;
+            if (own.membrane) return drawMark(px, py, colour);
+            if (sprite) {
+                pen.drawImage(sprite.image, px - sprite.reach, py - sprite.reach, 2 * sprite.reach, 2 * sprite.reach);
+            } else {
+                bodyPath(own, px, py, angle);
+                pen.fillStyle = colour;
+                pen.fill();
+                pen.strokeStyle = palette.edge;
+                pen.lineWidth = 1.2 * pixel;
+                pen.stroke();
+            }
+            if (angle !== angle) return;
+            const [cos, sin] = [Math.cos(angle) * own.reach, Math.sin(angle) * own.reach];
+            tick.moveTo(px + 0.25 * cos, py + 0.25 * sin);
+            tick.lineTo(px + 0.95 * cos, py + 0.95 * sin);
+        });
+    }
+    drawBodyLinks();
+    pen.lineCap = "butt";
+    ticks.forEach((paths, category) => paths.forEach((path, bright) => {
+        pen.strokeStyle = bright ? palette.edge : palette.paper;
+        pen.lineWidth = Math.min(2.2 * pixel, head.categories[category].reach / 4);
+        pen.stroke(path);
+    }));
+}
+
+// Where links between bodies are now, as in body_links.py: those that hold, with their load from -1 to 1.
+function placedLinks() {
+    const links = run.bodyLinks, placed = [];
+    if (!links) return placed;
+    const late = state.time + 1e-9 * Math.max(1, Math.abs(state.time));
+    const place = (object, [u, v]) => {
+        if (object === -1) return [u, v];
+        const {x, y, angle} = poses[object];
+        const [cos, sin] = angle === angle ? [Math.cos(angle), Math.sin(angle)] : [1, 0];
+        return [x + u * cos - v * sin, y + u * sin + v * cos];
+    };
+    let largest = links.leastTension;
+    for (let i = 0; i < links.a.length; i++) {
+        const [a, b, breaking] = [links.a[i], links.b[i], links.breaking[i]];
+        if (links.made[i] > late || links.cut[i] <= late || a < 0 || b < -1) continue;
+        const [x, y] = place(a, links.endA[i]), [toX, toY] = place(b, links.endB[i]);
+        const [dx, dy] = space.nearestImage(toX - x, toY - y);
+        if (dx !== dx || dy !== dy) continue;
+        const stretch = Math.hypot(dx, dy) - links.rest[i];
+        const tension = links.kind[i] === "spring" ? links.stiffness[i] * stretch : 0;
+        if (breaking === null) largest = Math.max(largest, Math.abs(tension));
+        placed.push({x, y, dx, dy, kind: links.kind[i], isPinned: b === -1, tension, breaking});
+    }
+    for (const link of placed) {
+        const most = link.breaking === null ? largest : link.breaking;
+        link.load = Math.min(Math.max(link.tension / most, -1), 1);
+    }
+    return placed;
+}
+
+const channelsOf = (colour) => colour.match(/\w\w/g).map((text) => parseInt(text, 16));
+
+function tensionColour(load) {
+    const [from, to] = [palette.link_at_rest, load < 0 ? palette.link_pushed : palette.link_pulled].map(channelsOf);
+    return `rgb(${from.map((own, i) => Math.round(own + Math.abs(load) * (to[i] - own))).join(",")})`;
+}
+
+function drawDot(x, y, radius, colour) {
+    pen.beginPath();
+    pen.arc(x, y, (radius + 0.6) / camera.scale, 0, 2 * Math.PI);
+    pen.fillStyle = palette.edge;
+    pen.fill();
+    pen.beginPath();
+    pen.arc(x, y, radius / camera.scale, 0, 2 * Math.PI);
+    pen.fillStyle = colour;
+    pen.fill();
+}
+
+function drawBodyLinks() {
+    pen.lineCap = "round";
+    for (const {x, y, dx, dy, kind, isPinned, load} of placedLinks()) {
+        const colour = tensionColour(load);
+        space.forEachImage(x + dx / 2, y + dy / 2, Math.hypot(dx, dy) / 2 + 4 / camera.scale, (ox, oy) => {
+            const [px, py] = [x + ox, y + oy];
+            if (kind === "hinge") return drawDot(px, py, 3.6, colour);
+            const width = kind === "rod" ? 3 : 2;
+            for (const [own, extra] of [[palette.edge, 1.2], [colour, 0]]) {
+                pen.strokeStyle = own;
+                pen.lineWidth = (width + extra) / camera.scale;
+                pen.beginPath();
+                pen.moveTo(px, py);
+                pen.lineTo(px + dx, py + dy);
+                pen.stroke();
+            }
+            if (isPinned) drawDot(px + dx, py + dy, 2.6, colour);
+        });
+    }
+}
+
+// A membrane whose dots the file does not have.
+function drawMark(x, y, colour) {
+    const side = 6 / camera.scale;
+    pen.strokeStyle = colour;
+    pen.lineWidth = 2 / camera.scale;
+    pen.strokeRect(x - side, y - side, 2 * side, 2 * side);
+}
+
+function drawSelection() {
+    for (const [object, colour, width] of [[state.hovered, "#ffffff", 1.5], [state.selected, palette.selection_rim, 3]]) {
+        if (object < 0 || !(poses[object].x === poses[object].x)) continue;
+        const own = categoryOf(object), {x, y, angle} = poses[object];
+        const larger = 1 + 3 / (camera.scale * own.radius);
+        space.forEachImage(x, y, own.radius * larger, (dx, dy) => {
+            bodyPath(own, x + dx, y + dy, angle, larger);
+            pen.strokeStyle = palette.selection;
+            pen.lineWidth = (width + 1.5) / camera.scale;
+            pen.stroke();
+            pen.strokeStyle = colour;
+            pen.lineWidth = width / camera.scale;
+            pen.stroke();
+        });
+    }
+}
+
+function drawScaleBar() {
+    const most = Math.min(canvas.clientWidth / 4, 180) / camera.scale;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const length = power * [5, 2, 1].find((step) => step * power <= most);
+    const y = canvas.clientHeight - 22;
+    pen.fillStyle = palette.ink;
+    pen.fillRect(16, y, length * camera.scale, 2.5);
+    pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+    pen.fillText(`${Number(length.toPrecision(3))} mm`, 16, y + 16);
+}
+
+function draw() {
+    if (state.follow && state.selected >= 0) {
+        const {x, y} = poses[state.selected];
+        if (x === x) camera.moveTo(x, y);
+    }
+    const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.fillStyle = palette.paper;
+    pen.fillRect(0, 0, canvas.clientWidth, canvas.clientHeight);
+    const scale = camera.scale * ratio;
+    const [left, top] = camera.toScreen(0, 0);
+    pen.setTransform(scale, 0, 0, scale, left * ratio, top * ratio);
+    pen.save();
+    pen.clip(floor, "evenodd");
+    drawFloor();
+    drawWalls();
+    drawLamps();
+    if (state.trails) drawTrails();
+    if (state.links) drawLinks();
+    drawGlows();
+    if (!space.isPeriodic) pen.restore();
+    drawMembranes();
+    drawBodies();
+    if (space.isPeriodic) {
+        drawSelection();
+        pen.restore();
+    }
+    pen.strokeStyle = palette.wall;
+    pen.lineWidth = 3 / camera.scale;
+    pen.lineJoin = "round";
+    pen.stroke(floor);
+    if (!space.isPeriodic) drawSelection();
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    drawScaleBar();
+}
+
+return {draw, colourOf, categoryOf, linkedPairs, placedLinks};
+}

@@ -1,0 +1,350 @@
+// The view of a run: what is drawn when, and what mouse, keys and controls do.
+
+const TAIL_S = 5;
+
+// Shows a run in the elements of view.html.
+//
+// root: the document, or a shadow root, that has these elements.
+// run: what is shown, a RecordedRun or a LiveRun: head, space, times, track, dots, columns, bodyLinks, lightAt(index),
+//     wallColour(wall, index); start: how it begins; moreValues(object).
+// player: what moves time: isPlaying, toggle(), step(records), setSpeed(speed), speeds, seek(time), tick(now);
+//     optional: drag(object, x, y), select(object), colourBy(name), keys.
+function swarmView(root, run, player) {
+const {head} = run;
+const count = head.objects.length;
+const element = (id) => root.getElementById(id);
+const canvas = element("arena");
+const poses = Array.from({length: count}, () => ({x: NaN, y: NaN, angle: NaN}));
+const state = {time: run.times[0], index: 0, trails: false, links: false, follow: false, selected: -1, hovered: -1,
+               tail: run.start.tail_s ?? TAIL_S, frames: 0, colouring: null};
+const camera = new Camera(canvas, run.space);
+const painter = makePainter({run, canvas, camera, poses, state});
+const {categoryOf, colourOf} = painter;
+const ended = new AbortController();  // of all that listens
+let dirty = true;
+
+function redraw() {
+    dirty = true;
+}
+
+function setTime(time) {
+    state.time = Math.min(Math.max(time, run.times[0]), run.times[run.times.length - 1]);
+    state.index = run.track.indexAt(state.time);
+    const share = run.track.shareAt(state.time, state.index);
+    for (let object = 0; object < count; object++) run.track.at(object, state.index, share, poses[object]);
+    dirty = true;
+}
+
+function showPlaying() {
+    element("play").classList.toggle("playing", player.isPlaying);
+    element("play").setAttribute("aria-label", player.isPlaying ? "Pause" : "Play");
+}
+
+function setSpeed(speed) {
+    player.setSpeed(speed);
+    element("speed").value = String(speed);
+}
+
+function colourBy(name) {
+    const found = run.columns.find((column) => column.name === name);
+    if (!found) throw new Error(`no column ${name}`);
+    state.colouring = found;
+    element("colour").value = name;
+    player.colourBy?.(name);
+    showKey();
+    dirty = true;
+}
+
+function select(object) {
+    state.selected = object;
+    if (object < 0) setSwitch("follow", false);
+    player.select?.(object);
+    dirty = true;
+}
+
+function setSwitch(name, on) {
+    state[name] = on;
+    element(name).checked = on;
+    dirty = true;
+}
+
+function fit() {
+    camera.fit();
+    setSwitch("follow", false);
+}
+
+function resize() {
+    const ratio = window.devicePixelRatio || 1;
+    canvas.width = Math.max(Math.round(canvas.clientWidth * ratio), 1);
+    canvas.height = Math.max(Math.round(canvas.clientHeight * ratio), 1);
+    if (camera.fitted) fit();
+    dirty = true;
+}
+
+// The object at a place on the screen, -1 if there is none; with a few pixels to spare.
+function objectAt(px, py) {
+    const [x, y] = camera.toArena(px, py);
+    let nearest = -1, least = Infinity;
+    for (let object = 0; object < count; object++) {
+        const [dx, dy] = run.space.nearestImage(x - poses[object].x, y - poses[object].y);
+        const distance = Math.hypot(dx, dy);
+        const radius = categoryOf(object).membrane ? 8 / camera.scale : categoryOf(object).radius + 3 / camera.scale;
+        if (distance <= radius && distance < least) [nearest, least] = [object, distance];
+    }
+    return nearest;
+}
+
+function draw() {
+    painter.draw();
+    element("clock").textContent = `${state.time.toFixed(2)} s`;
+    const scrub = element("scrub");
+    [scrub.min, scrub.max] = [String(run.times[0]), String(run.times[run.times.length - 1])];
+    scrub.value = String(state.time);
+    scrub.setAttribute("aria-valuetext", `${state.time.toFixed(2)} seconds`);
+    showRobot();
+    state.frames++;
+}
+
+function tick(now) {
+    if (ended.signal.aborted) return;
+    player.tick(now);
+    if (dirty) {
+        dirty = false;
+        draw();
+    }
+    requestAnimationFrame(tick);
+}
+
+// ---- panels
+
+const rounded = (value) => typeof value === "number" ? String(Number(value.toPrecision(6))) : String(value);
+
+// Values of all columns of an object, in the order of the file.
+function valuesOf(object) {
+    const values = {category: categoryOf(object).name, id: head.objects[object][1]};
+    const {x, y, angle} = poses[object];
+    for (const [name, value] of [["x", x], ["y", y], ["angle", angle]]) {
+        if (value === value) values[name] = Number(value.toFixed(name === "angle" ? 4 : 2));
+    }
+    for (const column of run.columns) {
+        if (!column.isListed) continue;
+        const name = column.name in values ? `${column.name} (column)` : column.name;
+        values[name] = column.value(object, state.index);
+    }
+    return {...values, ...run.moreValues?.(object)};
+}
+
+function tableOf(values) {
+    const table = document.createElement("table");
+    for (const [name, value] of Object.entries(values)) {
+        const row = table.insertRow();
+        row.insertCell().textContent = name;
+        row.insertCell().textContent = value === null ? "–" : rounded(value);
+    }
+    return table;
+}
+
+const nameOf = (object) => `${categoryOf(object).name} ${head.objects[object][1] ?? ""}`.trim();
+
+function showRobot() {
+    const panel = element("robot");
+    panel.hidden = state.selected < 0;
+    if (!panel.hidden) panel.replaceChildren(heading(nameOf(state.selected)), tableOf(valuesOf(state.selected)));
+    const tip = element("hover");
+    tip.hidden = state.hovered < 0;
+    if (tip.hidden) return;
+    tip.replaceChildren(heading(nameOf(state.hovered)), tableOf(valuesOf(state.hovered)));
+    const [x, y] = camera.toScreen(poses[state.hovered].x, poses[state.hovered].y);
+    tip.style.left = `${Math.max(4, Math.min(x + 18, canvas.clientWidth - tip.offsetWidth - 8))}px`;
+    tip.style.top = `${Math.max(4, Math.min(y + 14, canvas.clientHeight - tip.offsetHeight - 8))}px`;
+}
+
+function heading(text) {
+    const own = document.createElement("h2");
+    own.textContent = text;
+    return own;
+}
+
+// What the colours mean: a bar for numbers, a list for names, nothing for LEDs.
+function showKey() {
+    const key = element("key");
+    key.hidden = Boolean(state.colouring.led);
+    key.replaceChildren(heading(state.colouring.name));
+    if (state.colouring.labels && !state.colouring.base) {
+        state.colouring.labels.slice(0, 40).forEach((label, i) => key.append(entry(label, state.colouring.colours[i])));
+        if (state.colouring.labels.length > 40) key.append(`and ${state.colouring.labels.length - 40} more`);
+    } else if (state.colouring.base) {
+        head.categories.forEach((own, category) => {
+            if (head.categories.findIndex(({name}) => name === own.name) !== category) return;  // one of several kinds
+            const object = head.objects.findIndex(([number]) => number === category);
+            key.append(entry(own.name, state.colouring.colour(object, run.times.length - 1)));
+        });
+    } else {
+        const bar = document.createElement("div");
+        bar.className = "bar";
+        const shades = head.shades[state.colouring.shades];
+        bar.style.background = `linear-gradient(to right, ${shades.filter((_, i) => i % 15 === 0).join(", ")})`;
+        const ends = document.createElement("div");
+        ends.className = "ends";
+        ends.append(...[state.colouring.from, state.colouring.to].map((value) => {
+            const end = document.createElement("span");
+            end.textContent = String(Number(value.toPrecision(4)));
+            return end;
+        }));
+        key.append(bar, ends);
+    }
+}
+
+function entry(label, colour) {
+    const line = document.createElement("div");
+    const swatch = document.createElement("span");
+    swatch.className = "swatch";
+    swatch.style.background = colour;
+    line.append(swatch, label);
+    return line;
+}
+
+// ---- controls
+
+function toggleHelp(show = element("help").hidden) {
+    element("help").hidden = !show;
+}
+
+const KEYS = {
+    " ": () => player.toggle(),
+    ArrowLeft: (event) => player.step(event.shiftKey ? -10 : -1),
+    ArrowRight: (event) => player.step(event.shiftKey ? 10 : 1),
+    Home: () => player.seek(run.times[0]),
+    End: () => player.seek(run.times[run.times.length - 1]),
+    "+": () => setSpeed(nextSpeed(1)),
+    "=": () => setSpeed(nextSpeed(1)),
+    "-": () => setSpeed(nextSpeed(-1)),
+    t: () => setSwitch("trails", !state.trails),
+    l: () => setSwitch("links", !state.links),
+    f: () => setSwitch("follow", !state.follow && state.selected >= 0),
+    0: fit,
+    "?": () => toggleHelp(),
+    Escape: () => { toggleHelp(false); select(-1); },
+    ...player.keys,
+};
+
+function nextSpeed(direction) {
+    const known = [...element("speed").options].map((option) => Number(option.value));
+    const place = known.indexOf(Number(element("speed").value)) + direction;
+    return known[Math.min(Math.max(place, 0), known.length - 1)];
+}
+
+function listen(target, type, heard, options = {}) {
+    target.addEventListener(type, heard, {...options, signal: ended.signal});
+}
+
+function listenToKeys() {
+    listen(root, "keydown", (event) => {
+        if (event.ctrlKey || event.metaKey || event.altKey) return;
+        const own = event.target;
+        const isText = own.tagName === "SELECT" || (own.tagName === "INPUT" && ["text", "number"].includes(own.type));
+        if (isText || (own.type === "checkbox" && event.key === " ")) return;
+        const action = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+        if (!action) return;
+        event.preventDefault();
+        event.stopPropagation();  // of a notebook, which has keys of its own
+        action(event);
+    });
+    // A space that has been taken as play must not also press the button that has the focus.
+    listen(root, "keyup", (event) => {
+        if (event.key === " " && event.target.tagName === "BUTTON") event.preventDefault();
+    });
+}
+
+function listenToMouse() {
+    let drag = null;
+    const place = (event) => [event.offsetX, event.offsetY];
+    listen(canvas, "wheel", (event) => {
+        // In another page, which is scrolled, until the view has been clicked.
+        if ((window !== window.parent && !document.hasFocus()) || (root !== document && root.activeElement !== canvas)) return;
+        event.preventDefault();
+        camera.zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.0015)), ...place(event));
+        dirty = true;
+    }, {passive: false});
+    listen(canvas, "pointerdown", (event) => {
+        drag = {at: place(event), camera: [camera.x, camera.y], moved: false, object: objectAt(...place(event))};
+        canvas.setPointerCapture(event.pointerId);
+    });
+    listen(canvas, "pointermove", (event) => {
+        const [px, py] = place(event);
+        if (drag) {
+            const [dx, dy] = [px - drag.at[0], py - drag.at[1]];
+            drag.moved = drag.moved || Math.hypot(dx, dy) > 4;
+            if (!drag.moved) return;
+            if (player.drag && drag.object >= 0) {
+                player.drag(drag.object, ...camera.toArena(px, py));
+            } else {
+                setSwitch("follow", false);
+                camera.moveTo(drag.camera[0] - dx / camera.scale, drag.camera[1] - dy / camera.scale);
+            }
+        } else {
+            state.hovered = objectAt(px, py);
+            canvas.style.cursor = state.hovered < 0 ? "default" : "pointer";
+        }
+        dirty = true;
+    });
+    listen(canvas, "pointerup", (event) => {
+        if (drag && !drag.moved) select(objectAt(...place(event)));
+        drag = null;
+    });
+    listen(canvas, "pointerleave", () => { state.hovered = -1; dirty = true; });
+}
+
+function listenToControls() {
+    listen(element("play"), "click", () => player.toggle());
+    listen(element("scrub"), "input", (event) => player.seek(Number(event.target.value)));
+    listen(element("speed"), "change", (event) => setSpeed(Number(event.target.value)));
+    listen(element("colour"), "change", (event) => colourBy(event.target.value));
+    for (const name of ["trails", "links", "follow"]) {
+        listen(element(name), "change", (event) => setSwitch(name, event.target.checked));
+    }
+    listen(element("fit"), "click", fit);
+    listen(element("ask"), "click", () => toggleHelp());
+    const resized = new ResizeObserver(resize);
+    resized.observe(canvas);
+    ended.signal.addEventListener("abort", () => resized.disconnect());
+}
+
+// ---- start
+
+function fillControls() {
+    element("title").textContent = head.title;
+    element("notes").textContent = head.notes;
+    const speeds = [...new Set([...player.speeds, run.start.speed])].sort((a, b) => a - b);
+    const label = (speed) => speed === Infinity ? "fastest" : `${Number(speed.toPrecision(3))} ×`;
+    element("speed").replaceChildren(...speeds.map((speed) => new Option(label(speed), String(speed))));
+    fillColours();
+    setSpeed(run.start.speed);
+    setSwitch("trails", run.start.trails);
+    setSwitch("links", run.start.links);
+}
+
+function fillColours() {
+    element("colour").replaceChildren(...run.columns.map((column) => new Option(column.name, column.name)));
+}
+
+const view = {
+    state, camera, run, player, poses, painter, element, setTime, showPlaying, setSpeed, colourBy, select, setSwitch, fit,
+    redraw, draw, valuesOf, colourOf, showKey, fillColours, listen,
+    // Takes the view out of the page: nothing listens or draws any more.
+    end: () => ended.abort(),
+};
+player.attach(view);
+fillControls();
+const first = run.columns.find((column) => column.name === run.start.colourBy) || run.columns[0];
+colourBy(first.name);
+listenToKeys();
+listenToMouse();
+listenToControls();
+resize();
+fit();
+setTime(run.times[0]);
+showPlaying();
+requestAnimationFrame(tick);
+return view;
+}

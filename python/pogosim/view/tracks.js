@@ -1,0 +1,85 @@
+// Where objects are at any time, between the times of a record. See Timeline.at() in timeline.py.
+
+class Track {
+    // times: ascending, s. Classes that extend this one know x(object, index), y and angle.
+    constructor(times, space) {
+        this.times = times;
+        this.space = space;
+    }
+
+    // Number of the last time at or before a time.
+    indexAt(time) {
+        let first = 0, end = this.times.length;
+        const slack = 1e-9 * Math.max(1, Math.abs(time));
+        while (end - first > 1) {
+            const middle = (first + end) >> 1;
+            if (this.times[middle] <= time + slack) first = middle; else end = middle;
+        }
+        return first;
+    }
+
+    shareAt(time, index) {
+        if (index + 1 >= this.times.length) return 0;
+        const start = this.times[index];
+        return Math.min(Math.max((time - start) / (this.times[index + 1] - start), 0), 1);
+    }
+
+    // Pose of an object, on the straight and shortest way between two times.
+    at(object, index, share, pose) {
+        const {space} = this;
+        pose.x = this.x(object, index);
+        pose.y = this.y(object, index);
+        pose.angle = this.angle(object, index);
+        if (share <= 0 || index + 1 >= this.times.length) return pose;
+        let [dx, dy] = space.nearestImage(this.x(object, index + 1) - pose.x, this.y(object, index + 1) - pose.y);
+        if (!space.isPeriodic && (Math.abs(dx) > space.size[0] / 2 || Math.abs(dy) > space.size[1] / 2)) dx = dy = 0;
+        pose.x += share * dx;
+        pose.y += share * dy;
+        if (space.isPeriodic) {
+            pose.x = space.wrapped(pose.x, 0);
+            pose.y = space.wrapped(pose.y, 1);
+        }
+        const turn = this.angle(object, index + 1) - pose.angle;
+        if (turn === turn) pose.angle += share * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
+        return pose;
+    }
+}
+
+// The colour of a value on a scale from low to high.
+const shadeOn = (shades, value, from, to) =>
+    shades[Math.min(Math.max(Math.floor((value - from) / ((to - from) || 1) * shades.length), 0), shades.length - 1)];
+
+// A column that every run has, computed from what a record knows anyway.
+function computedColumn(head, name, valueOf, from, to, shades) {
+    const own = {name, from, to, shades, value: valueOf};
+    own.colour = (object, index) => {
+        const value = valueOf(object, index);
+        return value === null || value !== value ? head.palette.no_led
+            : shadeOn(head.shades[shades], value, own.from, own.to);
+    };
+    return own;
+}
+
+// robot_id, x, y and angle. poses: limits of x and y.
+function columnsOfPoses(head, track, poses) {
+    const ids = head.objects.map(([, id]) => id).filter((id) => id !== null);
+    const [least, most] = [ids.reduce((a, b) => Math.min(a, b), Infinity), ids.reduce((a, b) => Math.max(a, b), -Infinity)];
+    return [
+        computedColumn(head, "robot_id", (object) => head.objects[object][1], least, most, "number"),
+        computedColumn(head, "x", (object, index) => track.x(object, index), poses.x.low, poses.x.high, "number"),
+        computedColumn(head, "y", (object, index) => track.y(object, index), poses.y.low, poses.y.high, "number"),
+        computedColumn(head, "angle", (object, index) => track.angle(object, index), -Math.PI, Math.PI, "angle"),
+    ];
+}
+
+// Light on the floor as a small picture, to be stretched over the arena. levels: 0 to 255, row by row.
+function lightPicture(palette, cells, levels) {
+    const lamplight = palette.lamplight.match(/\w\w/g).map((text) => parseInt(text, 16));
+    const picture = document.createElement("canvas");
+    picture.width = picture.height = cells;
+    const image = new ImageData(cells, cells);
+    levels.forEach((level, cell) =>
+        image.data.set([...lamplight, Math.round(level * palette.brightest_lamplight)], 4 * cell));
+    picture.getContext("2d").putImageData(image, 0, 0);
+    return picture;
+}
