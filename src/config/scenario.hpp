@@ -68,6 +68,9 @@ struct ObjectConfig {
 /// Where the objects of the entry start, one pose for each; empty when the configuration does not say.
 std::vector<Placement> given_poses(ObjectConfig const& object);
 
+/// Pixels of a side of a picture, and so of the window.
+inline constexpr int kMostPixels = 16384;
+
 /// Window and pictures.
 struct ViewConfig {
     bool gui = true;

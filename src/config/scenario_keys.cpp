@@ -257,9 +257,9 @@ std::span<Key<ViewConfig> const> view_keys() {
         K{"GUI_speed_up", &ViewConfig::gui_speed_up, between(0, 1e6), "",
           "Simulated seconds per second in the window; 0: as fast as possible."}
             .only_if([](ViewConfig const& view) { return view.gui; }),
-        K{"window_width", &ViewConfig::window_width_px, between(1, 16384), "pixels",
+        K{"window_width", &ViewConfig::window_width_px, between(1, kMostPixels), "pixels",
           "Width of the window and of frames."},
-        K{"window_height", &ViewConfig::window_height_px, between(1, 16384), "pixels",
+        K{"window_height", &ViewConfig::window_height_px, between(1, kMostPixels), "pixels",
           "Height of the window and of frames."},
         K{"mm_to_pixels", &ViewConfig::mm_to_pixels, any(), "pixels per mm",
           "Ignored; the arena is fitted to the window. The metadata contain the scale."},

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/floating_point.hpp"
+#include "config/scenario.hpp"
 #include "device/sensing.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
@@ -155,10 +156,9 @@ char const* pogosim_run_messages(pogosim_run* run) {
 
 int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint8_t* rgb) {
     return with_status_of(*run, [&] {
-        constexpr int32_t kMostPx = 16384;
-        if (std::min(width_px, height_px) < 1 || std::max(width_px, height_px) > kMostPx) {
+        if (std::min(width_px, height_px) < 1 || std::max(width_px, height_px) > kMostPixels) {
             throw ConfigError(fmt::format("a picture has 1 to {} pixels in a row, and as many rows; found {} x {}",
-                                          kMostPx, width_px, height_px));
+                                          kMostPixels, width_px, height_px));
         }
         Canvas const canvas = run->simulation().picture({width_px, height_px});
         for (Pixel const pixel : canvas.pixels()) {

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 import shapely
 from pogosim.analysis import snapshots
 from pogosim.analysis.arena import Arena
-from pogosim.analysis.coverage import coverage_over_time, covered_area
+from pogosim.analysis.coverage import coverage_over_time
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.analysis.voronoi import voronoi_areas, voronoi_cells
 from pogosim.errors import AnalysisError
@@ -34,7 +36,8 @@ def areas(position_mm: Floats, arena: Arena) -> Floats:
 
 
 def covered(position_mm: Floats, arena: Arena, reach_mm: float) -> float:
-    return covered_area(voronoi_cells(position_mm, arena), position_mm, arena, reach_mm)
+    run = replace(run_at(position_mm), arena=arena)
+    return float(coverage_over_time(run, reach_mm)["coverage_ratio"].iloc[0]) * arena.area_mm2
 
 
 def run_at(position_mm: Floats, periodic: bool = False) -> Trajectories:

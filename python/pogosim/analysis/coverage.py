@@ -10,7 +10,7 @@ import pandas as pd
 from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.snapshots import Snapshots, snapshots_of
 from pogosim.analysis.trajectories import Run
-from pogosim.analysis.voronoi import Cells, cells_of_places, one_each, places_at_times
+from pogosim.analysis.voronoi import Cells, cells_of_places, places_at_times
 from pogosim.errors import AnalysisError
 
 if TYPE_CHECKING:
@@ -87,28 +87,11 @@ def statistics(own: Snapshots, arena: Arena, floor: shapely.Geometry, reach_mm: 
     )
 
 
-def covered_area(cells: Cells, position_mm: Floats, arena: Arena, reach_mm: float) -> float:
-    """Return the area of the union of disks around robots, within the floor that their cells cover.
-
-    A point is in a disk if its nearest robot is not farther away than the radius. So the union is made of the
-    intersections of each disk with the cell of its own robot, which do not overlap; see `disk_and_edges`.
-
-    Args:
-        cells: Cells of `voronoi_cells`, shape (n,).
-        position_mm: The same positions, shape (n, 2).
-        arena: The same arena.
-        reach_mm: Radius of the disks.
-
-    Returns:
-        mm^2, exact but for rounding.
-    """
-    places, place = one_each(position_mm, arena)
-    first = np.unique(place, return_index=True)[1]
-    return max(float(areas_in_reach(cells[first], places, reach_mm).sum()), 0.0)
-
-
 def areas_in_reach(cells: Cells, place_mm: Floats, reach_mm: float) -> Floats:
     """Return the area of the intersection of the cell of each place with a disk around it, mm^2.
+
+    A point is in a disk if its nearest robot is not farther away than the radius. So the union of the disks is made of
+    these intersections, which do not overlap; see `disk_and_edges`.
 
     Args:
         cells: Cells of `cells_of_places`, shape (n,).

@@ -189,11 +189,6 @@ class Trajectories(Run):
         values = self.rows[name].to_numpy()[self.row].astype(float if is_number else object)
         return np.where(self.row >= 0, values, np.array(np.nan if is_number else None))
 
-    def snapshots(self) -> Iterator[tuple[float, Floats, npt.NDArray[np.bool_]]]:
-        """Yield each time in s, the positions (n, 2) of the robots that are there, and which those are, shape (N,)."""
-        for time, positions, is_there in zip(self.time_s, self.position_mm, self.is_there, strict=True):
-            yield float(time), positions[is_there], is_there
-
 
 def trajectories_of(
     rows: pd.DataFrame, metadata: Mapping[str, Any] | None = None, category: str | None = None

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 # PyYAML, elftools and pandas are imported where they are used: a short run takes less time than importing one of them.
 
 MOST_SEED = 2**32 - 1
-MOST_PIXELS = 16384  # of a side of a picture
+MOST_PIXELS = 16384  # of a side of a picture: kMostPixels of src/config/scenario.hpp
 MOST_STEPS = 2**62  # of one call, which stops at the end of the run anyway
 CLOSED = "the simulation is closed: make another one"
 SLICE_S = 0.05  # of wall-clock time, after which Ctrl-C is looked for
@@ -631,8 +631,8 @@ class Simulation:
         follows the configuration, such as `show_communication_channels`.
 
         Args:
-            width: Pixels, 1 to 16384. The whole arena is in the middle of the picture.
-            height: Pixels, 1 to 16384.
+            width: Pixels, 1 to `MOST_PIXELS` (16384). The whole arena is in the middle of the picture.
+            height: Pixels, likewise.
 
         Returns:
             Red, green and blue, 0 to 255. Shape (height, width, 3), the first row along the top; a copy.
