@@ -17,6 +17,7 @@ from pogosim.batch.parts import Part
 from pogosim.batch.results import replacement, write_results
 from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.run_data import read_run
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.utils import load_dataframe
@@ -27,7 +28,7 @@ def task(folder: Path, key: str, run: int = 0) -> Task:
     """Return a run whose data file would be in a folder."""
     temporary = TemporaryFolder(folder, "b", is_kept=False)
     temporary.done.mkdir(exist_ok=True)
-    settings = RunSettings(Path("/p"), "", folder, temporary, retries=0, gui=False)
+    settings = RunSettings(Path("/p"), "", folder, temporary, RunPolicy(retries=0))
     return Task(key, run, run, "", (("data_filename", "d"),), settings)
 
 

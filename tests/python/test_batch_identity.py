@@ -12,6 +12,7 @@ import yaml
 from pogosim.batch.identity import config_hash, program_digest
 from pogosim.batch.run import RunSettings, Task
 from pogosim.batch.run_files import found_beside
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.tasks import tasks_of
 from pogosim.batch.temporary import TemporaryFolder
 from running import LIBRARY
@@ -36,7 +37,7 @@ def tasks(tmp_path: Path, beside: Path, monkeypatch: pytest.MonkeyPatch) -> Task
     temporary = TemporaryFolder(tmp_path / "tmp", "batch", is_kept=False)
 
     def make(entries: dict[str, Any], program: str = "") -> list[Task]:
-        settings = RunSettings(Path("/program"), program, beside, temporary, retries=0, gui=False)
+        settings = RunSettings(Path("/program"), program, beside, temporary, RunPolicy(retries=0))
         return tasks_of(entries, [5, 6], settings, {})
 
     return make

@@ -17,6 +17,7 @@ from batches import batch, results, start_batch, wait_for_simulators, wait_until
 from pogosim.batch import run_server
 from pogosim.batch.execution import Execution
 from pogosim.batch.run import RunSettings, Task
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.run_server import NotServedError, RunServer, RunServers, ServerLostError
 from pogosim.batch.simulators import Simulators
 from pogosim.batch.temporary import TemporaryFolder
@@ -360,7 +361,7 @@ def test_run_that_another_worker_has_done_may_lose_its_server(tmp_path: Path, mo
 
 def settings_in(folder: Path, runs: Path) -> RunSettings:
     """Return what all runs in a folder have in common."""
-    return RunSettings(runs, "", folder, TemporaryFolder(folder, "batch", is_kept=False), retries=0, gui=False)
+    return RunSettings(runs, "", folder, TemporaryFolder(folder, "batch", is_kept=False), RunPolicy(retries=0))
 
 
 def test_server_is_gone_after_a_run_that_fails(tmp_path: Path) -> None:

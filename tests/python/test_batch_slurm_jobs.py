@@ -14,6 +14,7 @@ from pogosim.batch.cluster_jobs import LOST_PER_JOB, own_folder, with_keys
 from pogosim.batch.cluster_jobs import idle as idle_of
 from pogosim.batch.errors import BatchError
 from pogosim.batch.run import Outcome, RunSettings, Task
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.slurm import (
     SlurmWorkers,
     bytes_of,
@@ -131,7 +132,7 @@ def test_units_of_memory_are_those_of_sbatch(memory: str, size: int) -> None:
 def task(folder: Path, retries: int = 0) -> Task:
     """Return a run."""
     temporary = TemporaryFolder(folder, "batch", is_kept=False)
-    settings = RunSettings(Path("/p"), "", folder, temporary, retries, gui=False)
+    settings = RunSettings(Path("/p"), "", folder, temporary, RunPolicy(retries))
     return Task("key", 0, 0, "", (("data_filename", "d"),), settings)
 
 

@@ -18,6 +18,7 @@ import yaml
 from pogosim.batch.backends import Workers
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.rows import Runs
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.calibration import rounding, statistics
 from pogosim.calibration.command import main
 from pogosim.calibration.fit import bias_range
@@ -429,7 +430,7 @@ def test_what_is_known_of_robots_is_what_the_simulator_says(protocol: Path, here
     robots = {"type": "pogobot", "nb": 3, "robot_model": "own.yaml", "max_angular_speed": 2.5}
     write_configuration(here / "conf.yaml", objects={"robots": robots}, time_step=0.008)
     configuration = Configuration("conf.yaml")
-    runs = Runs(configuration, str(protocol), "tmp", "out", Workers(number=1), retries=0)
+    runs = Runs(configuration, str(protocol), "tmp", "out", Workers(number=1), RunPolicy(retries=0))
     with runs.opened():
         scene = read_scene(runs, configuration.resolved(), "robots")
     assert (scene.radius_mm, scene.time_step_s, scene.size_mm.tolist()) == (31.0, 0.008, [1500.0, 1500.0])

@@ -271,9 +271,9 @@ def command_of_users(program: str, configuration: Path) -> str:
 
 def arguments_of(task: Task, number: int, configuration: str) -> list[str]:
     """Return the command line of an attempt, after the program."""
-    settings = task.settings
-    window = [] if settings.gui else ["-g"]
-    return ["-c", configuration, *settings.says, "--seed", str(task.seed_of(number)), *window]
+    policy = task.settings.policy
+    window = [] if policy.gui else ["-g"]
+    return ["-c", configuration, *policy.says, "--seed", str(task.seed_of(number)), *window]
 
 
 def disk_full(temporary: TemporaryFolder) -> str:

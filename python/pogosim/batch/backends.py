@@ -18,7 +18,6 @@ from pogosim.batch.attempts import do_run
 from pogosim.batch.errors import BatchError, at_least
 from pogosim.batch.jobqueue_options import QueuedJobs
 from pogosim.batch.run import Outcome, Task
-from pogosim.batch.saved_runs import check_period
 from pogosim.batch.simulators import simulators
 from pogosim.batch.slurm_options import CORES, SlurmJobs
 
@@ -42,8 +41,6 @@ class Workers:
         number: Runs at the same time; None: one per processor.
         scheduler: Address of a Dask scheduler (tcp://...) whose workers do the runs.
         jobs: Jobs of SLURM, or of another batch system, that do the runs.
-        is_isolated: Each run is a process of its own; else, one process may do many, one after the other.
-        save_every_s: Wall-clock time, in s, after which the state of each run is saved, to go on from; None: never.
 
     Raises:
         BatchError: These do not go together.
@@ -53,8 +50,6 @@ class Workers:
     number: int | None = None
     scheduler: str | None = None
     jobs: SlurmJobs | QueuedJobs | None = None
-    is_isolated: bool = False
-    save_every_s: float | None = None
 
     def __post_init__(self) -> None:
         if self.backend not in BACKENDS:
@@ -69,8 +64,6 @@ class Workers:
             raise BatchError(f"{flag} goes without --backend, --scheduler and --workers; see {flag}-jobs")
         if self.number is not None:
             at_least(1, self.number, "--workers")
-        if self.save_every_s is not None:
-            check_period(self.save_every_s)
 
     @property
     def count(self) -> int:

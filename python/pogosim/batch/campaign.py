@@ -179,7 +179,7 @@ def entries_of(runner: PogobotBatchRunner) -> dict[str, Any]:
         "seeds": list(runner.seeds),
         "backend": runner.workers.name,
         "jobs": min(runner.workers.at_once, count),
-        "retry_new_seed": runner.retry_new_seed,
+        "retry_new_seed": runner.policy.retry_new_seed,
         "outputs": runner.generated,
         "failures": [
             {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 import pogosim
 from pogosim.batch.ending import Report, RunsFailedError, catch_signals, ended, start_logging
@@ -22,7 +21,7 @@ from pogosim.batch.run_options import (
     runner_of,
 )
 from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown_subcommand
-from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.errors import ToolError
 from pogosim.lines import say, say_error
 
@@ -107,8 +106,11 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogobatch") -> int
 
 def kept_of(arguments: argparse.Namespace) -> str:
     """Return what a batch has left in its folder for temporary files, in words; empty: nothing."""
-    batch = batch_name([arguments.config, arguments.output_dir, arguments.simulator_binary or "."])
-    return TemporaryFolder(Path(arguments.temp_base).absolute(), batch, is_kept=True).kept()
+    program = arguments.simulator_binary or "."
+    folder = TemporaryFolder.of_batch(
+        arguments.temp_base, arguments.config, arguments.output_dir, program, is_kept=True
+    )
+    return folder.kept()
 
 
 def help_of(words: Sequence[str], prog: str) -> int:

@@ -16,17 +16,19 @@ from pogosim.batch.backends import Do, Workers
 from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.execution import Execution
-from pogosim.batch.identity import find_program, program_digest, world_digest
+from pogosim.batch.identity import world_digest
 from pogosim.batch.joining import part_of
 from pogosim.batch.names import ambiguous, new_columns, value_at
+from pogosim.batch.open_batch import OpenBatch
 from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.reports import report_warnings
 from pogosim.batch.results import write_results
-from pogosim.batch.run import Outcome, RunSettings
+from pogosim.batch.run import Outcome
 from pogosim.batch.run_data import RunFile
 from pogosim.batch.run_log import with_last_line
-from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
-from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.batch.run_policy import RunPolicy
+from pogosim.batch.tasks import Combination
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.utils import load_dataframe
 
 ARENA = "arena_file"
@@ -81,9 +83,8 @@ class Runs:
         temp_base: Folder for files of single runs.
         output_dir: Folder of the results; with the others, it tells apart what shares a folder for temporary files.
         workers: The workers that do the runs.
-        retries: How many times a failed run is repeated.
+        policy: How the runs are done.
         keep_temp: Keep the files of single runs.
-        retry_new_seed: Repeat them with other seeds, see `pogosim.batch.seeds.replacements`.
 
     Attributes:
         simulator_s: Wall-clock time, in s, that simulators have taken, added up.
@@ -97,31 +98,17 @@ class Runs:
         temp_base: str,
         output_dir: str,
         workers: Workers,
-        retries: int = 5,
+        policy: RunPolicy,
         keep_temp: bool = False,
-        retry_new_seed: bool = False,
     ) -> None:
         self.configuration = configuration
         self.workers = workers
         self.program = program
-        path = find_program(program)
-        beside = configuration.path.absolute().parent
-        batch = batch_name([str(configuration.path), output_dir, program])
-        self.temporary = TemporaryFolder(Path(temp_base).absolute(), batch, keep_temp)
-        self.settings = RunSettings(
-            path,
-            program_digest(path),
-            beside,
-            self.temporary,
-            retries,
-            gui=False,
-            retry_new_seed=retry_new_seed,
-            is_isolated=workers.is_isolated,
-            save_every_s=workers.save_every_s,
-        )
-        self.file_digests: dict[Path, str] = {}
-        world = world_digest(configuration.entries, self.settings.folders, self.file_digests)
-        self.digests = {"configuration": world, "program": self.settings.program_digest}
+        self.temporary = TemporaryFolder.of_batch(temp_base, str(configuration.path), output_dir, program, keep_temp)
+        self.batch = OpenBatch(configuration, program, self.temporary, policy)
+        settings = self.batch.settings
+        world = world_digest(configuration.entries, settings.folders, self.batch.file_digests)
+        self.digests = {"configuration": world, "program": settings.program_digest}
         self.simulator_s = 0.0
         self.warned: dict[str, str] = {}  # the first warning of each kind
         self.do: Do | None = None
@@ -133,16 +120,14 @@ class Runs:
         Raises:
             BatchError: They cannot be had.
         """
-        with self.temporary.locked():
-            self.temporary.remove_leftovers()
+        with self.batch.held():
             try:
                 with self.workers.opened(keep_idle=True) as self.do:
                     yield
-                self.temporary.forget_finished_runs()
+                self.batch.forget_runs()
             finally:
                 self.do = None
                 self.temporary.remove_leftovers()  # of workers that were killed
-                self.temporary.tidy([])
 
     def rows_of(
         self,
@@ -200,10 +185,10 @@ class Runs:
             combined = combinations_of(entries)
         combinations, whole = [], ambiguous(combined)
         for own in combined:
-            check_logs_data(own, self.configuration)
+            tasks = self.batch.tasks_of(own, seeds)
             columns = new_columns(own, whole)
             columns.setdefault(ARENA, value_at(own, ARENA) if ARENA in own else None)
-            combinations.append(Combination("", columns, own, tasks_of(own, seeds, self.settings, self.file_digests)))
+            combinations.append(Combination("", columns, own, tasks))
         return Wanted(number, combinations, {task.key for combination in combinations for task in combination.tasks})
 
     def problem_of(self, outcome: Outcome) -> str:

@@ -11,11 +11,11 @@ from pathlib import Path
 from pogosim.batch.errors import BatchError
 from pogosim.batch.identity import PYTHON
 from pogosim.batch.run_data import RunFile, read_run
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.temporary import TemporaryFolder
 from pogosim.extensions import MODELS_VARIABLE, models_path
 
 FRAMES = "frames"  # folder of the outputs of a run, in its own
-QUIET = ("-nr", "-q")  # a simulator prints warnings and errors only
 
 log = logging.getLogger("pogobatch")
 
@@ -28,12 +28,7 @@ class RunSettings:
     program_digest: str
     configuration_folder: Path  # where files that configurations name are searched, too
     temporary: TemporaryFolder
-    retries: int
-    gui: bool
-    retry_new_seed: bool = False  # a run that failed is repeated with another seed
-    says: tuple[str, ...] = QUIET
-    is_isolated: bool = False  # each run is a process of its own
-    save_every_s: float | None = None  # of wall-clock time, its state, to go on from after an end; None: never
+    policy: RunPolicy
     working_folder: Path = field(default_factory=Path.cwd)
     models_path: str = field(default_factory=lambda: models_path(log.warning))  # folders, as in POGOSIM_PATH
 
@@ -64,17 +59,17 @@ class RunSettings:
         """Why each run is a process of its own, whatever the program does; empty: nothing asks for it."""
         reasons = {
             "its program is a Python file": self.program.suffix == PYTHON,
-            "--isolated": self.is_isolated,
+            "--isolated": self.policy.is_isolated,
             "--save-states": self.saves_states,
             "--keep-temp": self.temporary.is_kept,
-            "--gui": self.gui,
+            "--gui": self.policy.gui,
         }
         return ", ".join(reason for reason, applies in reasons.items() if applies)
 
     @property
     def saves_states(self) -> bool:
         """Whether a run that is ended goes on later from its state; a Python file has its own command line."""
-        return self.save_every_s is not None and self.program.suffix != PYTHON
+        return self.policy.save_every_s is not None and self.program.suffix != PYTHON
 
 
 @dataclass(frozen=True)
@@ -92,7 +87,8 @@ class Task:
     @property
     def retries(self) -> int:
         """How many times the run is repeated if it fails: there may be too few seeds for as many as are asked for."""
-        return len(self.replacements) if self.settings.retry_new_seed else self.settings.retries
+        policy = self.settings.policy
+        return len(self.replacements) if policy.retry_new_seed else policy.retries
 
     @property
     def data(self) -> str:

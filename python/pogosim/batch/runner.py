@@ -15,20 +15,21 @@ from pogosim.batch.combinations import combinations_of
 from pogosim.batch.configuration import Configuration, dump_configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, tell
 from pogosim.batch.execution import Execution
-from pogosim.batch.identity import find_program, program_digest, seed_of
+from pogosim.batch.identity import seed_of
 from pogosim.batch.jobqueue_options import QueuedJobs
 from pogosim.batch.joining import join, remove_stale, removing_stale
 from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, new_columns
+from pogosim.batch.open_batch import OpenBatch
 from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
-from pogosim.batch.run import QUIET, RunSettings, Task
-from pogosim.batch.saved_runs import states_in
+from pogosim.batch.run_policy import QUIET, RunPolicy
+from pogosim.batch.saved_runs import tell_of_states
 from pogosim.batch.seeds import listed_seeds, range_text
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
-from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
-from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.batch.tasks import Combination
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.run_columns import RETRY
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
@@ -132,17 +133,19 @@ class PogobotBatchRunner:
         self.simulator_binary = str(given.path("simulator_binary", simulator_binary))
         self.temp_base = str(given.path("temp_base", temp_base))
         self.output_dir = str(given.path("output_dir", output_dir))
-        self.workers = Workers(backend, workers, scheduler, jobs, isolated, save_states)
+        self.workers = Workers(backend, workers, scheduler, jobs)
+        if simulator_output not in SIMULATOR_OUTPUTS:
+            known = ", ".join(SIMULATOR_OUTPUTS)
+            raise BatchError(f"simulator_output: expected one of {known}; found '{simulator_output}'")
+        says = SIMULATOR_OUTPUTS[simulator_output]
+        self.policy = RunPolicy(retries, retry_new_seed, gui, isolated, save_states, says)
+        self.shows_warnings = simulator_output != "quiet"
         self.keep_temp = keep_temp
         self.verbose = verbose
-        self.retries = at_least(0, retries, "--retries")
-        self.gui = gui
         self.only_output = only_output
         self.seed_from = seed_from
-        self.retry_new_seed = retry_new_seed
         self.layout = OF_CAMPAIGNS if with_seeds else PLAIN
         self.progress = progress
-        self.simulator_output = simulator_output
         self.failures: list[Failure] = []
         self.replaced: list[Replaced] = []
         self.simulator_s = 0.0
@@ -150,15 +153,11 @@ class PogobotBatchRunner:
         self.combination_count = 0
         self.whole: frozenset[str] = frozenset()  # columns whose paths are not reduced to their stems
         self.queue: list[Combination] | None = None
-        self.run_settings: RunSettings | None = None
-        self.digests: dict[Path, str] = {}  # of files that configurations name
+        self.batch: OpenBatch | None = None  # within prepared()
         # Configurations of combinations that were written: their text and entries by path.
         self.written: dict[str, tuple[str, dict[str, Any]]] = {}
         if seed_from not in ("run", "config"):
             raise BatchError(f"--seed-from: expected run or config; found '{seed_from}'")
-        if simulator_output not in SIMULATOR_OUTPUTS:
-            known = ", ".join(SIMULATOR_OUTPUTS)
-            raise BatchError(f"simulator_output: expected one of {known}; found '{simulator_output}'")
         self.configuration = Configuration(self.multi_config_file)
         if not self.runs:
             asked_for = self.configuration.seeds or range(1)
@@ -306,13 +305,11 @@ class PogobotBatchRunner:
             if join(of_output, execution.finished, self.configuration.text, self.layout):
                 self.generated.append(output)
         if not self.failures:
-            self.temporary.forget_finished_runs()
-            self.temporary.remove_leftovers()  # of workers that were killed
+            self.open_batch.forget_runs()
 
     def execution_of(self, combinations: Sequence[Combination]) -> Execution:
         """Return the runs of combinations, of which none has ended yet."""
-        shows_warnings = self.simulator_output != "quiet"
-        execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, shows_warnings)
+        execution = Execution(combinations, self.simulator_binary, self.configuration, self.layout, self.shows_warnings)
         self.failures, self.replaced, self.simulator_s, self.generated = execution.failures, [], 0.0, []
         return execution
 
@@ -321,7 +318,7 @@ class PogobotBatchRunner:
         waiting = execution.waiting()
         if done := len(execution.finished):
             tell(f"{done} of {len(execution.tasks)} runs are done already, in {self.temporary.done}")
-        self.tell_of_states(waiting)
+        tell_of_states(waiting, self.open_batch.settings, self.simulator_binary)
         if waiting and (why := waiting[0].settings.why_alone):
             log.debug("each run is a process of its own: %s", why)
         with self.workers.opened() as do:
@@ -341,64 +338,27 @@ class PogobotBatchRunner:
         if self.failures:
             log.error("%d run(s) failed; the same command does them again, and only them", len(self.failures))
 
-    def tell_of_states(self, waiting: Sequence[Task]) -> None:
-        """Say which runs go on, which cannot, and which would if they were asked to."""
-        keys = {task.key for task in waiting}
-        found = [state.parent.name for state in states_in(self.temporary.saved, "*/")]
-        going_on = sum(name.partition("_")[0] in keys for name in found)
-        if self.workers.save_every_s is None:
-            if going_on:
-                runs = (
-                    "1 unfinished run has a saved state"
-                    if going_on == 1
-                    else f"{going_on} unfinished runs have saved states"
-                )
-                log.warning("%s: give --save-states to continue %s", runs, "it" if going_on == 1 else "them")
-            return
-        if self.run_settings is not None and not self.run_settings.saves_states:
-            log.warning("--save-states: %s is a Python file, whose runs cannot be saved", self.simulator_binary)
-            return
-        if going_on:
-            tell(f"{going_on} of {len(waiting)} runs go on from their states, in {self.temporary.saved}")
-        if others := len(found) - going_on:
-            log.warning(
-                "%d states in %s are of runs with another configuration, program or seed: nothing goes on from them",
-                others,
-                self.temporary.saved,
-            )
-
     # ---- Its parts ----
 
     @property
     def temporary(self) -> TemporaryFolder:
         """The folder for temporary files."""
-        batch = batch_name([self.multi_config_file, self.output_dir, self.simulator_binary])
-        return TemporaryFolder(Path(self.temp_base).absolute(), batch, self.keep_temp)
+        return TemporaryFolder.of_batch(
+            self.temp_base, self.multi_config_file, self.output_dir, self.simulator_binary, self.keep_temp
+        )
+
+    @property
+    def open_batch(self) -> OpenBatch:
+        """The batch, within `prepared()`."""
+        assert self.batch is not None
+        return self.batch
 
     @contextlib.contextmanager
     def prepared(self) -> Iterator[None]:
         """Look at the program, and keep the folder for temporary files for this batch meanwhile."""
-        program = find_program(self.simulator_binary)
-        beside = Path(self.multi_config_file).absolute().parent
-        self.digests = {}
-        self.run_settings = RunSettings(
-            program,
-            program_digest(program),
-            beside,
-            self.temporary,
-            retries=self.retries,
-            gui=self.gui,
-            retry_new_seed=self.retry_new_seed,
-            says=SIMULATOR_OUTPUTS[self.simulator_output],
-            is_isolated=self.workers.is_isolated,
-            save_every_s=self.workers.save_every_s,
-        )
-        with self.temporary.locked():
-            self.temporary.remove_leftovers()
-            try:
-                yield
-            finally:
-                self.temporary.tidy(self.written)
+        self.batch = OpenBatch(self.configuration, self.simulator_binary, self.temporary, self.policy)
+        with self.batch.held(self.written):
+            yield
 
     def checked_selection(self) -> list[tuple[dict[str, Any], str]]:
         """Return the combinations to do, each with its file of results, after all checks that need no program.
@@ -442,11 +402,9 @@ class PogobotBatchRunner:
                 entries = Configuration(path).entries
         except OSError as error:
             raise cannot("read", path, error) from None
-        check_logs_data(entries, self.configuration)
-        assert self.run_settings is not None  # within prepared()
         columns = self.compute_new_columns(entries)
         columns = {name: value for name, value in columns.items() if name not in self.layout.run_columns}
         seeds = [self.compute_seed(entries, run) for run in range(self.runs)]
         name = os.path.relpath(output, self.output_dir)
-        tasks = tasks_of(entries, seeds, self.run_settings, self.digests)
+        tasks = self.open_batch.tasks_of(entries, seeds)
         return Combination(output, columns, entries, tasks, name, range_text(seeds))

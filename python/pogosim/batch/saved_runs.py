@@ -3,39 +3,31 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import re
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from pogosim.batch.errors import BatchError, one_line
-from pogosim.batch.run import FRAMES, Task
+from pogosim.batch.errors import BatchError, one_line, tell
+from pogosim.batch.run import FRAMES, RunSettings, Task
 from pogosim.batch.run_log import LOG
+from pogosim.batch.temporary import STATE
 from pogosim.continued import ContinuedError, join_parts, parts_of
 from pogosim.outputs import lock
 from pogosim.recover import DAMAGED, reraise_system_error
 
-STATE = ".state"
 LOCK = "lock"
-MOST_SECONDS = 1e6  # between states
 PATIENCE_S = 10.0  # for the simulator of a batch that was killed
 
 # How a run ends that was asked to: it has saved its state; or was killed, and has an earlier one.
 INTERRUPTED = 130
 FROM_OUTSIDE = (INTERRUPTED, *(-number for number in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT, signal.SIGHUP)))
 
-
-def check_period(save_every_s: float) -> None:
-    """Check how often states are saved.
-
-    Raises:
-        BatchError: It is no time.
-    """
-    if not 0.0 <= save_every_s <= MOST_SECONDS:
-        raise BatchError(f"--save-states: expected a time from 0 to {MOST_SECONDS:.0f} s; found {save_every_s:g}")
+log = logging.getLogger("pogobatch")
 
 
 @dataclass(frozen=True)
@@ -75,12 +67,12 @@ class SavedRun:
 
     def others(self) -> list[Path]:
         """Return the states of other runs in the folder."""
-        found = states_in(self.folder)
+        found = [path for path in self.folder.glob(f"*{STATE}") if path.stat().st_size > 0]
         return [path for path in found if path != self.state and re.fullmatch(r"[0-9a-f]{32}_\d+", path.stem)]
 
     def arguments(self) -> list[str]:
         """Return what the simulator is told in addition."""
-        every = ["--save-state", str(self.state), "--save-state-every", f"{self.task.settings.save_every_s:g}"]
+        every = ["--save-state", str(self.state), "--save-state-every", f"{self.task.settings.policy.save_every_s:g}"]
         return [*every, "--from-state", str(self.state)] if self.has_state else every
 
     def begin(self) -> None:
@@ -117,9 +109,34 @@ class SavedRun:
             path.unlink(missing_ok=True)
 
 
-def states_in(folder: Path, below: str = "") -> list[Path]:
-    """Return the states in a folder, or in those `below` it ("*/"); a run that was killed early left an empty file."""
-    return [path for path in folder.glob(f"{below}*{STATE}") if path.stat().st_size > 0]
+def tell_of_states(waiting: Sequence[Task], settings: RunSettings, program: str) -> None:
+    """Say which runs of a batch go on from their states, which cannot, and which would if they were asked to.
+
+    Args:
+        waiting: Runs that are not done yet.
+        settings: What all runs of the batch have in common.
+        program: Its name in messages.
+    """
+    temporary, keys = settings.temporary, {task.key for task in waiting}
+    found = [state.parent.name for state in temporary.states()]
+    going_on = sum(name.partition("_")[0] in keys for name in found)
+    if settings.policy.save_every_s is None:
+        if going_on == 1:
+            log.warning("1 unfinished run has a saved state: give --save-states to continue it")
+        elif going_on:
+            log.warning("%d unfinished runs have saved states: give --save-states to continue them", going_on)
+        return
+    if not settings.saves_states:
+        log.warning("--save-states: %s is a Python file, whose runs cannot be saved", program)
+        return
+    if going_on:
+        tell(f"{going_on} of {len(waiting)} runs go on from their states, in {temporary.saved}")
+    if others := len(found) - going_on:
+        log.warning(
+            "%d states in %s are of runs with another configuration, program or seed: nothing goes on from them",
+            others,
+            temporary.saved,
+        )
 
 
 def folder_of(task: Task, number: int) -> Path:

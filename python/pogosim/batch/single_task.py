@@ -12,21 +12,22 @@ from typing import Any
 from pogosim.batch.attempts import attempt_from_state, attempt_in
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.errors import BatchError, at_least, cannot, given
-from pogosim.batch.identity import find_program, program_digest
 from pogosim.batch.manifests import MOST, TASK, read_manifest, task_entries, write_json
 from pogosim.batch.names import file_name, new_columns
+from pogosim.batch.open_batch import OpenBatch
 from pogosim.batch.option_words import CHOICES, shown
 from pogosim.batch.parts import OF_CAMPAIGNS, WITH_SEEDS
 from pogosim.batch.places import in_the_users_file
 from pogosim.batch.result_metadata import columns_as_text
 from pogosim.batch.results import check_columns
-from pogosim.batch.run import FRAMES, Outcome, RunSettings, Task
+from pogosim.batch.run import FRAMES, Outcome, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.run_log import EFFECTIVE, with_last_line
-from pogosim.batch.saved_runs import SavedRun, check_period, held
+from pogosim.batch.run_policy import RunPolicy
+from pogosim.batch.saved_runs import SavedRun, held
 from pogosim.batch.seeds import listed_seeds, seeds_between
 from pogosim.batch.simulators import simulators
-from pogosim.batch.tasks import Combination, check_logs_data, tasks_of
+from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder, batch_name
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, RUN, SEED
@@ -164,7 +165,6 @@ def execute_task(
     entries = configuration.resolved()
     with configuration.placing_errors():
         name, columns = file_name(entries), new_columns(entries)
-    check_logs_data(entries, configuration)
     folder = given.path("output_dir", output_dir)
     task = task_in(folder, configuration, entries, program, seed, run_index, gui, save_states)
     combination = Combination("", columns, entries, [task], name)
@@ -234,11 +234,7 @@ def task_in(
     save_states: float | None = None,
 ) -> Task:
     """Return a run whose files are in a folder."""
-    path = find_program(program)
     temporary = TemporaryFolder(folder.absolute(), batch_name([str(folder)]), is_kept=True)
-    beside = configuration.path.absolute().parent
-    if save_states is not None:
-        check_period(save_states)
-    settings = RunSettings(path, program_digest(path), beside, temporary, retries=0, gui=gui, save_every_s=save_states)
-    (task,) = tasks_of(entries, [seed], settings, {})
+    policy = RunPolicy(retries=0, gui=gui, save_every_s=save_states)
+    (task,) = OpenBatch(configuration, program, temporary, policy).tasks_of(entries, [seed])
     return replace(task, run=run_index)

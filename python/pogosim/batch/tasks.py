@@ -56,7 +56,8 @@ def tasks_of(
         outputs["data_filename"] = f"{Path(outputs['data_filename']).stem}.feather"
     text = dump_configuration(world) if world else ""
     digest = world_digest(world, settings.folders, digests)
-    others = replacements(seeds, settings.retries) if settings.retry_new_seed else [()] * len(seeds)
+    policy = settings.policy
+    others = replacements(seeds, policy.retries) if policy.retry_new_seed else [()] * len(seeds)
     return [
         Task(
             key=run_key(digest, settings.program_digest, seed),

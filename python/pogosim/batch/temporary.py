@@ -12,6 +12,8 @@ from pathlib import Path
 from pogosim.batch.errors import BatchError, cannot
 from pogosim.outputs import lock
 
+STATE = ".state"  # ending of the saved state of a run
+
 
 def batch_name(paths: Sequence[str]) -> str:
     """Return the name of a batch in names of temporary files: the same whenever the same command is given.
@@ -34,6 +36,13 @@ class TemporaryFolder:
     batch: str  # see batch_name
     is_kept: bool  # all files stay
 
+    @classmethod
+    def of_batch(
+        cls, temp_base: str, configuration: str, output_dir: str, program: str, is_kept: bool
+    ) -> TemporaryFolder:
+        """Return the folder of a batch, of which the others say what tells it apart in there."""
+        return cls(Path(temp_base).absolute(), batch_name([configuration, output_dir, program]), is_kept)
+
     @property
     def done(self) -> Path:
         """The folder of finished runs."""
@@ -44,10 +53,14 @@ class TemporaryFolder:
         """The folder of unfinished runs that go on from their states."""
         return self.path / f"sim_saved_{self.batch}"
 
+    def states(self) -> list[Path]:
+        """Return the states from which runs go on; a run that was killed early has left an empty file."""
+        return [path for path in self.saved.glob(f"*/*{STATE}") if path.stat().st_size > 0]
+
     def kept(self) -> str:
         """Return what an ended batch has left: "2 finished runs and the state of 1 unfinished run"; empty: nothing."""
         finished = sum(1 for _ in self.done.glob("*.feather"))
-        states = sum(path.stat().st_size > 0 for path in self.saved.glob("*/*.state"))
+        states = len(self.states())
         runs = f"{finished} finished run{'' if finished == 1 else 's'}" if finished else ""
         unfinished = "the state of 1 unfinished run" if states == 1 else f"the states of {states} unfinished runs"
         return " and ".join(text for text in (runs, unfinished if states else "") if text)

@@ -15,6 +15,7 @@ import numpy as np
 from pogosim.batch.backends import Workers
 from pogosim.batch.configuration import Configuration
 from pogosim.batch.rows import Runs
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
 from pogosim.calibration.reading import read_track_table
@@ -118,8 +119,8 @@ def calibrate(prog: str, options: argparse.Namespace) -> None:
             str(program),
             folder,
             folder,
-            Workers(number=options.workers, is_isolated=options.isolated),
-            retries=0,
+            Workers(number=options.workers),
+            RunPolicy(retries=0, is_isolated=options.isolated),
         )
         with runs.opened():
             scene = read_scene(runs, entries, category)

@@ -14,6 +14,7 @@ from pogosim.batch.jobqueue_options import asked_jobs
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
 from pogosim.batch.run_files import found_beside
+from pogosim.batch.run_policy import RunPolicy
 from pogosim.batch.tasks import check_logs_data
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
@@ -68,7 +69,7 @@ def workers_of(arguments: argparse.Namespace, settings: Settings) -> Workers:
     number = arguments.workers
     if number is None and settings.batch_jobs and jobs is None:
         number = settings.candidate_jobs * settings.batch_jobs
-    return Workers(settings.backend, number, arguments.scheduler, jobs, arguments.isolated, arguments.save_states)
+    return Workers(settings.backend, number, arguments.scheduler, jobs)
 
 
 def say_where_it_starts(space: Space) -> None:
@@ -115,9 +116,13 @@ def optimize(
         settings.temp_base,
         settings.output_dir,
         workers_of(arguments, settings),
-        settings.retries,
+        RunPolicy(
+            settings.retries,
+            settings.retry_new_seed,
+            is_isolated=arguments.isolated,
+            save_every_s=arguments.save_states,
+        ),
         settings.keep_temp,
-        settings.retry_new_seed,
     )
     digests = runs.digests | objective.digests
     journal = Journal(folder / JOURNAL, description_of(space, settings, digests), arguments.resume)
