@@ -16,7 +16,7 @@ from batches import ENVIRONMENT, arguments, batch, results, script
 from batches import write_options as write
 from pogosim.batch import jobqueue
 from pogosim.batch.errors import BatchError
-from pogosim.batch.jobqueue import QueuedWorkers, words_of
+from pogosim.batch.jobqueue import JobqueueSystem, words_of
 from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs, setting
 from running import Run, example
 from searches import COMMAND as SEARCH
@@ -305,13 +305,12 @@ def test_jobs_that_have_not_joined_are_counted(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(jobqueue, "REMIND_S", 0.0)
-    workers = QueuedWorkers(QueuedJobs("pbs"), keep_idle=False)
-    workers.jobs = {str(number): SimpleNamespace(job_id=f"{number}.server") for number in range(4)}
-    workers.started_s = time.monotonic()
+    system = JobqueueSystem(QueuedJobs("pbs"))
+    system.jobs = {str(number): SimpleNamespace(job_id=f"{number}.server") for number in range(4)}
     said = []
     for joined in ([], ["0"], ["1", "2", "3"]):
-        workers.joined.update(joined)
-        workers.remind()
+        system.joined.update(joined)
+        system.report(since_s=3.0)
         said.append("".join(capsys.readouterr()))
     assert "pbs: no job has joined the batch yet" in said[0]
     assert "pbs: 3 of 4 jobs have not joined the batch yet, for 0 min (the first: 1.server)" in said[1]

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import time
 from collections.abc import Generator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from pogosim.batch import queued_workers
 from pogosim.batch.backends import by_jobs
 from pogosim.batch.cluster_jobs import LOST_PER_JOB, own_folder, with_keys
 from pogosim.batch.cluster_jobs import idle as idle_of
 from pogosim.batch.errors import BatchError
+from pogosim.batch.queued_workers import EVERY_JOB, QueuedWorkers
 from pogosim.batch.run import Outcome, RunSettings, Task
 from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.slurm import (
-    SlurmWorkers,
-    bytes_of,
-    close,
-    job_settings,
-    log_folder,
-    started,
-)
-from pogosim.batch.slurm_jobs import Jobs
+from pogosim.batch.slurm import Slurm, bytes_of
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.temporary import TemporaryFolder
 
@@ -65,29 +61,38 @@ def commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Commands:
     return Commands(folder)
 
 
-def jobs_of(commands: Commands, wanted: int = 2, cores: int = 1, start_timeout_s: float | None = None) -> Jobs:
-    """Return submitted jobs."""
-    jobs = Jobs("#!script\n", "mine", wanted, cores, start_timeout_s, commands.folder)
-    jobs.submit(wanted)
-    return jobs
+class Jobs(QueuedWorkers):
+    """Submitted jobs, whose scheduler has no workers."""
 
+    def __init__(
+        self, commands: Commands, wanted: int = 2, cores: int = 1, start_timeout_s: float | None = None
+    ) -> None:
+        self.slurm = Slurm(SlurmJobs(jobs=wanted))
+        super().__init__(self.slurm)
+        self.slurm.script, self.slurm.job_name, self.slurm.logs = "#!script\n", "mine", commands.folder
+        self.slurm.start_timeout_s = start_timeout_s
+        self.cluster = SimpleNamespace(scheduler=SimpleNamespace(workers={}), close=lambda **_: None)
+        self.wanted, self.cores = wanted, cores
+        self.started_s = time.monotonic()
+        self.submit(wanted)
 
-def poll(jobs: Jobs, left: int = 9) -> None:
-    """Look at the jobs now."""
-    jobs.next_poll_s = 0
-    jobs.poll(left)
+    def look_now(self, left: int = 9) -> None:
+        """Look at the jobs now."""
+        self.next_look_s = 0.0
+        self.poll(left)
 
 
 # ---- What a job is ----
 
 
 def settings_of(site: dict[str, Any] | None = None, cores: int = 1, **request: Any) -> dict[str, Any]:
-    return job_settings(SlurmJobs(**request), site or {}, cores, Path("/logs"))
+    return Slurm(SlurmJobs(cores=cores, **request)).settings(site or {}, Path("/logs"))
 
 
 def test_job_has_one_hour_and_two_gigabytes_per_core_by_default() -> None:
     settings = settings_of(cores=3)
-    assert (settings["cores"], settings["processes"], settings["nanny"]) == (3, 1, False)
+    assert settings["cores"] == 3
+    assert EVERY_JOB == {"processes": 1, "nanny": False}
     assert (settings["walltime"], settings["job_mem"], settings["memory"]) == ("01:00:00", "6G", 6 * 1024**3)
     assert (settings["queue"], settings["account"]) == (None, None)
     assert (settings["log_directory"], settings["job_extra_directives"]) == ("/logs", [])
@@ -142,15 +147,25 @@ class Started:
     def __init__(self, folder: Path, site: dict[str, Any], tasks: int = 3, retries: int = 0, **request: Any) -> None:
         def cluster(**arguments: Any) -> Any:
             self.arguments = arguments
-            return SimpleNamespace(job_script=lambda: "#!script\n")
+            scheduler = SimpleNamespace(workers={})
+            return SimpleNamespace(job_script=lambda: "#!script\n", scheduler=scheduler, close=lambda **_: None)
 
         dask = SimpleNamespace(config=SimpleNamespace(collect=lambda: {"jobqueue": {"slurm": site}}))
-        jobqueue = SimpleNamespace(SLURMCluster=cluster)
-        distributed = importlib.import_module("distributed")
+        security = importlib.import_module("distributed").Security
+        client = SimpleNamespace(close=lambda **_: None)
+        distributed = SimpleNamespace(Security=security, Client=lambda _: client)
         runs = [task(folder, retries) for _ in range(tasks)]
-        self.cluster, self.jobs = started(dask, distributed, jobqueue, runs, SlurmJobs(**request))
-        self.keys = sorted(path.name for path in log_folder(runs[0]).iterdir())
-        close(self.cluster, self.jobs, log_folder(runs[0]))
+        self.slurm = Slurm(SlurmJobs(**request))
+        with pytest.MonkeyPatch.context() as patched, contextlib.closing(QueuedWorkers(self.slurm)) as self.workers:
+            patched.setattr(queued_workers, "imported", lambda *_: (dask, distributed))
+            patched.setattr(queued_workers, "imported_jobqueue", lambda _: SimpleNamespace(SLURMCluster=cluster))
+            self.workers.do(runs)
+            self.keys = sorted(path.name for path in log_folder(folder).iterdir())
+
+
+def log_folder(folder: Path) -> Path:
+    """Return where the logs of jobs are."""
+    return folder / "slurm_batch"
 
 
 @pytest.mark.parametrize(("retries", "allowed"), [(0, 5), (9, 9)])
@@ -171,21 +186,21 @@ def test_site_says_how_the_scheduler_is_reached_and_how_many_cores_a_job_has(
     options = batch.arguments["scheduler_options"]
     assert (options["interface"], options["dashboard_address"], options["allowed_failures"]) == ("ib0", ":1", 5)
     assert (batch.arguments["cores"], batch.arguments["job_mem"]) == (2, "4G")
-    assert (batch.jobs.cores, batch.jobs.wanted, len(commands.asked("sbatch"))) == (2, 3, 3)
-    assert Started(tmp_path, site, tasks=5, cores=5, jobs=7).jobs.wanted == 1
-    assert Started(tmp_path, site, tasks=50, jobs=7, wait_min=2).jobs.start_timeout_s == 120
+    assert (batch.workers.cores, batch.workers.wanted, len(commands.asked("sbatch"))) == (2, 3, 3)
+    assert Started(tmp_path, site, tasks=5, cores=5, jobs=7).workers.wanted == 1
+    assert Started(tmp_path, site, tasks=50, jobs=7, wait_min=2).slurm.start_timeout_s == 120
 
 
 def test_refused_jobs_leave_no_keys_and_no_folder(commands: Commands, tmp_path: Path) -> None:
     commands.write("sbatch", "echo 'sbatch: error: no such account' >&2; exit 1")
     with pytest.raises(BatchError, match=r"^sbatch refuses the job: no such account$"):
         Started(tmp_path, {})
-    assert not list(tmp_path.glob("slurm_*"))
+    assert not log_folder(tmp_path).exists()
 
 
 def test_keys_and_jobs_go_with_the_batch(commands: Commands, tmp_path: Path) -> None:
     assert Started(tmp_path, {}).keys == ["tls_ca_file.pem", "tls_cert.pem", "tls_key.pem"]
-    assert list(log_folder(task(tmp_path)).iterdir()) == []
+    assert not log_folder(tmp_path).exists()
     assert len(commands.asked("scancel")) == 2  # those of a killed batch, and its own
 
 
@@ -208,12 +223,12 @@ def test_keys_can_be_read_by_their_owner_only_whatever_was_there(tmp_path: Path)
 
 
 def test_jobs_have_the_script_and_the_name_of_the_batch_and_are_cancelled_by_it(commands: Commands) -> None:
-    jobs = jobs_of(commands)
+    jobs = Jobs(commands)
     assert commands.asked("sbatch") == ["--parsable --job-name=mine"] * 2
     assert (commands.folder / "script").read_text() == "#!script\n"
-    assert list(jobs.states) == ["1", "2"]
-    jobs.release(["2", "7"])
-    jobs.cancel()
+    assert list(jobs.slurm.jobs) == ["1", "2"]
+    jobs.slurm.cancel(["2", "7"])
+    jobs.close()
     released, cancelled = commands.asked("scancel")
     assert released == "2"
     assert cancelled.startswith("--user=")
@@ -221,16 +236,16 @@ def test_jobs_have_the_script_and_the_name_of_the_batch_and_are_cancelled_by_it(
 
 
 def test_lost_jobs_are_replaced_by_as_many_as_are_still_of_use(commands: Commands) -> None:
-    jobs = jobs_of(commands, wanted=3, cores=2)
+    jobs = Jobs(commands, wanted=3, cores=2)
     commands.set_states("1|TIMEOUT|None", "2|RUNNING|None")  # and 3 is forgotten
-    poll(jobs, left=4)
-    assert list(jobs.states) == ["2", "4"]
-    poll(jobs, left=0)
+    jobs.look_now(left=4)
+    assert list(jobs.slurm.jobs) == ["2", "4"]
+    jobs.look_now(left=0)
     assert len(commands.asked("squeue")) == 1
 
 
 def test_squeue_is_not_asked_again_and_again(commands: Commands) -> None:
-    jobs = jobs_of(commands)
+    jobs = Jobs(commands)
     commands.set_states("1|RUNNING|None", "2|RUNNING|None")
     for _ in range(5):
         jobs.poll(2)
@@ -238,23 +253,23 @@ def test_squeue_is_not_asked_again_and_again(commands: Commands) -> None:
 
 
 def test_controller_that_does_not_answer_is_asked_later(commands: Commands) -> None:
-    jobs = jobs_of(commands)
+    jobs = Jobs(commands)
     commands.write("squeue", "exit 1")
-    poll(jobs)
-    assert (list(jobs.states), jobs.lost_in_vain) == (["1", "2"], 0)
+    jobs.look_now()
+    assert (list(jobs.slurm.jobs), jobs.lost_in_vain) == (["1", "2"], 0)
 
 
 def test_batch_ends_when_job_after_job_is_lost_but_not_while_runs_are_finished(commands: Commands) -> None:
-    jobs = jobs_of(commands, wanted=1)
+    jobs = Jobs(commands, wanted=1)
     commands.set_states()
     for _ in range(LOST_PER_JOB - 1):
-        poll(jobs)
-    jobs.note_progress()
+        jobs.look_now()
+    jobs.lost_in_vain = 0  # as when a run is finished
     for _ in range(LOST_PER_JOB - 1):
-        poll(jobs)
+        jobs.look_now()
     (commands.folder / f"job-{2 * LOST_PER_JOB - 1}.err").write_text("first\nout of memory\n")
     with pytest.raises(BatchError, match=r"3 jobs have ended since .* ends with: out of memory; if runs need longer"):
-        poll(jobs)
+        jobs.look_now()
 
 
 @pytest.mark.parametrize(
@@ -276,31 +291,31 @@ def test_batch_ends_when_job_after_job_is_lost_but_not_while_runs_are_finished(c
     ],
 )
 def test_jobs_that_will_never_start_end_the_batch(reason: str, commands: Commands) -> None:
-    jobs = jobs_of(commands, wanted=1)
+    jobs = Jobs(commands, wanted=1)
     commands.set_states(f"1|PENDING|{reason}")
     with pytest.raises(BatchError, match=rf"will not start the jobs: 1 job PENDING \({reason}\)"):
-        poll(jobs)
+        jobs.look_now()
 
 
 def test_jobs_that_may_start_are_waited_for(commands: Commands) -> None:
-    jobs = jobs_of(commands)
+    jobs = Jobs(commands)
     for reason in ("Priority", "Resources", "QOSMaxJobsPerUserLimit", "PartitionDown", "AssocGrpCpuLimit"):
         commands.set_states("1|PENDING|BadConstraints", f"2|PENDING|{reason}")
-        poll(jobs)
+        jobs.look_now()
     commands.set_states("1|PENDING|BadConstraints", "2|RUNNING|None")
-    poll(jobs)
-    assert jobs.has_started
+    jobs.look_now()
+    assert jobs.slurm.has_started
 
 
 def test_patience_is_for_the_first_job_only(commands: Commands) -> None:
-    jobs = jobs_of(commands, wanted=1, start_timeout_s=0)
+    jobs = Jobs(commands, wanted=1, start_timeout_s=0)
     commands.set_states("1|RUNNING|None")
-    poll(jobs)
+    jobs.look_now()
     commands.set_states("1|PENDING|Priority")  # put back
-    poll(jobs)
-    jobs.has_started = False
+    jobs.look_now()
+    jobs.slurm.has_started = False
     with pytest.raises(BatchError, match=r"within --slurm-wait: 1 job PENDING \(Priority\)"):
-        poll(jobs)
+        jobs.look_now()
 
 
 @pytest.mark.parametrize(
@@ -326,16 +341,14 @@ def test_run_that_ends_is_progress_and_logs_stay_if_it_failed(
     def ended(*_: object) -> Generator[Outcome, None, None]:
         yield Outcome("key", problem)
 
-    monkeypatch.setattr("pogosim.batch.slurm.outcomes_of", ended)
-    workers = SlurmWorkers(SlurmJobs())
-    workers.jobs = jobs_of(commands)
-    workers.jobs.lost_in_vain = 2
-    workers.first_task = run = task(tmp_path)
-    own_folder(log_folder(run))
-    assert [outcome.problem for outcome in workers.do([run])] == [problem]
-    assert workers.jobs.lost_in_vain == 0
+    monkeypatch.setattr(queued_workers, "outcomes_of", ended)
+    workers = Jobs(commands)
+    workers.folder = own_folder(log_folder(tmp_path))
+    workers.lost_in_vain = 2
+    assert [outcome.problem for outcome in workers.do([task(tmp_path)])] == [problem]
+    assert workers.lost_in_vain == 0
     workers.close()
-    assert log_folder(run).exists() == bool(problem)
+    assert log_folder(tmp_path).exists() == bool(problem)
 
 
 def test_batch_without_runs_needs_no_jobs(commands: Commands) -> None:

@@ -123,11 +123,12 @@ def by_dask(workers: Workers) -> AbstractContextManager[Do]:
 @contextlib.contextmanager
 def by_jobs(request: SlurmJobs | QueuedJobs, keep_idle: bool) -> Iterator[Do]:
     """Let jobs of a batch system do runs. They are submitted with the first runs, and end when this is closed."""
-    from pogosim.batch.jobqueue import QueuedWorkers
-    from pogosim.batch.slurm import SlurmWorkers
+    from pogosim.batch.jobqueue import JobqueueSystem
+    from pogosim.batch.queued_workers import QueuedWorkers
+    from pogosim.batch.slurm import Slurm
 
-    workers = SlurmWorkers(request, keep_idle) if isinstance(request, SlurmJobs) else QueuedWorkers(request, keep_idle)
-    with contextlib.closing(workers):
+    system = Slurm(request) if isinstance(request, SlurmJobs) else JobqueueSystem(request)
+    with contextlib.closing(QueuedWorkers(system, keep_idle)) as workers:
         yield workers.do
 
 

@@ -1,218 +1,135 @@
-"""Runs done by jobs of PBS, Grid Engine and others, whose submission dask-jobqueue knows.
-
-Jobs are Dask workers, which join a scheduler in the process of the batch, see `pogosim.batch.cluster_jobs`.
-"""
+"""Jobs of PBS, Grid Engine and others, whose submission dask-jobqueue knows; see `pogosim.batch.queued_workers`."""
 
 from __future__ import annotations
 
 import contextlib
-import logging
 import shutil
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.cluster_jobs import (
-    LOST_PER_JOB,
-    forget_keys,
-    idle,
-    imported_jobqueue,
-    jobs_for,
-    own_folder,
-    runs_of_workers,
-    scheduler_options,
-    site_settings,
-    with_keys,
-)
-from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
-from pogosim.batch.in_job import do_in_job
 from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs
-from pogosim.batch.run import Outcome, Task
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB
-from pogosim.lines import counted
+from pogosim.batch.temporary import TemporaryFolder
 
 REMIND_S = 60.0
-LEAVING_S = 3.0
 
 
-class QueuedWorkers:
-    """Jobs of a batch system that do runs, and the scheduler that they join.
+class JobqueueSystem:
+    """A batch system that dask-jobqueue knows. That a job has ended is seen when its worker had joined, and leaves."""
 
-    Jobs that have joined and are lost are replaced, and their runs are done again. Logs stay if something went wrong.
-    """
+    folder = "jobs"
 
-    def __init__(self, request: QueuedJobs, keep_idle: bool) -> None:
+    def __init__(self, request: QueuedJobs) -> None:
         self.request = request
-        self.keep_idle = keep_idle
+        self.name = self.title = request.system
         self.flag = f"--jobqueue {request.system}"
-        self.client: Any = None
-        self.cluster: Any = None
-        self.folder: Path | None = None
-        self.keeps_logs = False
-        self.cores, self.logs = CORES, ""
-        self.jobs: dict[str, Any] = {}  # by the name of the worker
+        self.most_jobs = request.jobs
+        self.jobs: dict[str, Any] = {}  # of dask-jobqueue
         self.joined: set[str] = set()  # names of the workers that have
-        self.submitted = self.most_jobs = 0
-        self.lost_in_vain = 0  # jobs lost since a run was finished
-        self.told_s = self.started_s = 0.0
+        self.cluster: Any = None
+        self.count = 0  # of all jobs that were submitted
+        self.logs = ""
+        self.told_s = time.monotonic()
 
-    def do(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Do runs.
+    @property
+    def has_started(self) -> bool:
+        """Whether a job has joined."""
+        return bool(self.joined)
 
-        Raises:
-            BatchError: A package or a command is missing, or the batch system refuses the jobs; later: all are lost.
-        """
-        if tasks and self.client is None:
-            self.start(tasks[0])
-        if tasks:
-            self.submit(jobs_for(len(tasks), self.request.jobs, self.cores) - len(self.jobs))
-        return self.outcomes(tasks)
-
-    def start(self, task: Task) -> None:
-        """Start the scheduler.
-
-        Raises:
-            BatchError: A package or a command is missing, or a setting is wrong.
-        """
-        dask, distributed = imported(self.flag, "slurm")
-        cluster_class = getattr(imported_jobqueue(self.flag), CLUSTERS[self.request.system])
-        if shutil.which(command := cluster_class.job_cls.submit_command.split()[0]) is None:
+    def cluster_class(self, jobqueue: Any) -> Any:
+        """Return the class of dask-jobqueue; raises BatchError if the command is missing that submits jobs."""
+        found = getattr(jobqueue, CLUSTERS[self.name])
+        if shutil.which(command := found.job_cls.submit_command.split()[0]) is None:
             raise BatchError(f"{self.flag}: there is no command '{command}'; run it where you submit jobs")
-        self.folder = own_folder(task.settings.temporary.path / f"jobs_{task.settings.temporary.batch}")
-        self.keeps_logs = task.settings.temporary.is_kept
-        settings = self.settings(site_settings(dask, self.request.system), task.retries)
-        self.cores, self.logs = settings["cores"], settings["log_directory"]
-        try:
-            settings["security"] = with_keys(distributed.Security, self.folder)
-            self.cluster = cluster_class(silence_logs=logging.CRITICAL, **settings)
-            self.cluster.scheduler.add_plugin(noting_joined(distributed, self.joined), name="pogosim-joined")
-            self.client = distributed.Client(self.cluster)
-        except (OSError, ValueError, RuntimeError, TypeError) as error:
-            raise BatchError(
-                f"{self.flag}: {one_line(error)}; settings are those of --jobqueue-set, and of "
-                f"{self.request.system} in jobqueue.yaml"
-            ) from None
-        self.started_s = self.told_s = time.monotonic()
+        return found
 
-    def settings(self, site: dict[str, Any], retries: int) -> dict[str, Any]:
-        """Return the arguments of the class of dask-jobqueue."""
+    def settings(self, site: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+        """Return what a job is."""
         given = {**{key.replace("-", "_"): value for key, value in site.items()}, **dict(self.request.settings)}
         cores = given.get("cores", CORES)
-        return {
+        settings = {
             "memory": f"{MEMORY_PER_CORE_GB * cores}GB",
-            "log_directory": str(self.folder),
+            "log_directory": str(folder),
             **given,
             "cores": cores,
-            "processes": 1,  # simulators are processes of their own, which its threads wait for
-            "nanny": False,  # the batch system sees when a worker ends
-            "scheduler_options": scheduler_options(retries, given.get("scheduler_options")),
             "worker_extra_args": [*(given.get("worker_extra_args") or []), "--preload", "pogosim.batch.in_job"],
         }
+        self.logs = settings["log_directory"]
+        return settings
 
-    def submit(self, number: int) -> None:
-        """Submit some jobs.
+    def cannot_start(self, error: str) -> str:
+        """Return what is said of wrong settings."""
+        return f"{error}; settings are those of --jobqueue-set, and of {self.name} in jobqueue.yaml"
 
-        Raises:
-            BatchError: The batch system refuses them.
-        """
-        scheduler = self.cluster.scheduler
-        address = scheduler.contact_address or scheduler.address
-        for _ in range(number):
-            name = str(self.submitted)
-            made = self.cluster.new_spec
-            job = made["cls"](address, name, **made["options"])
-            try:
-                self.cluster.sync(job.start)
-            except (OSError, ValueError, RuntimeError) as error:
-                raise BatchError(f"{self.flag}: the job is refused: {words_of(error)}") from None
-            self.jobs[name] = job
-            self.submitted += 1
-            self.most_jobs = max(self.most_jobs, len(self.jobs))
-        if number > 0:
-            counts = f"{counted(number, 'job')} of {counted(self.cores, 'core')}"
-            tell(f"{self.request.system}: submitted {counts}; logs: {self.logs}")
+    def begin(self, cluster: Any, distributed: Any, temporary: TemporaryFolder) -> None:  # noqa: ARG002
+        """Take the scheduler, and note from now on which workers join it."""
+        self.cluster = cluster
+        cluster.scheduler.add_plugin(noting_joined(distributed, self.joined), name="pogosim-joined")
+        self.told_s = time.monotonic()
 
-    def outcomes(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Yield the outcomes of runs, and look after the jobs meanwhile."""
-        left = len(tasks)
-        if not tasks:
-            return
-        ended = outcomes_of(tasks, self.client, lambda: self.poll(left), do_in_job)
-        with contextlib.closing(ended) as outcomes:
-            for outcome in outcomes:
-                left -= 1
-                self.lost_in_vain = 0
-                self.keeps_logs |= bool(outcome.problem)
-                yield outcome
+    def submit(self) -> None:
+        """Submit a job; raises BatchError if it is refused."""
+        name, made, scheduler = str(self.count), self.cluster.new_spec, self.cluster.scheduler
+        job = made["cls"](scheduler.contact_address or scheduler.address, name, **made["options"])
+        try:
+            self.cluster.sync(job.start)
+        except (OSError, ValueError, RuntimeError) as error:
+            raise BatchError(f"{self.flag}: the job is refused: {words_of(error)}") from None
+        self.jobs[name] = job
+        self.count += 1
 
-    def poll(self, left: int) -> None:
-        """Replace jobs that have been lost, and say so if some have not joined for long.
+    def submitted(self, counts: str, logs: str) -> str:
+        """Return what is said of jobs that were submitted."""
+        return f"submitted {counts}; logs: {logs}"
 
-        Args:
-            left: Runs that are not finished.
+    def wait_s(self, since_s: float) -> float:  # noqa: ARG002
+        """Return 0: the scheduler, which is in this process, knows all."""
+        return 0.0
 
-        Raises:
-            BatchError: Job after job is lost.
-        """
-        workers = runs_of_workers(self.cluster)
-        if not self.keep_idle:
-            for name in idle(self.jobs, workers, self.cores, left):
-                self.cancel(self.jobs.pop(name))
-        lost = [name for name in self.jobs if name in self.joined and name not in workers]
-        for name in lost:
-            job = self.jobs.pop(name)
-            self.lost_in_vain += 1
-            self.keeps_logs = True
-            tell(f"{self.request.system}: job {job.job_id} has ended before the batch; its runs are done again")
-            self.cancel(job)
-        if self.lost_in_vain >= LOST_PER_JOB * self.most_jobs:
-            raise BatchError(
-                f"{self.flag}: {self.lost_in_vain} jobs have ended since a run was finished; if runs need longer, or "
-                f"more memory, ask for it by --jobqueue-set; logs: {self.logs}"
-            )
-        if lost:
-            self.submit(jobs_for(left, self.request.jobs, self.cores) - len(self.jobs))
-        self.remind()
+    def ended(self, workers: Mapping[str, int]) -> dict[str, str]:
+        """Forget the jobs whose workers have joined and left."""
+        gone = [name for name in self.jobs if name in self.joined and name not in workers]
+        numbers = {str(self.jobs[name].job_id): "" for name in gone}
+        self.cancel(gone)
+        return numbers
 
-    def remind(self) -> None:
-        """Say every minute how many jobs have not joined; whether they wait or have ended, only the system knows."""
-        now = time.monotonic()
+    def check_hope(self, since_s: float) -> None:
+        """Do nothing: whether jobs that have not joined wait or have ended, only the batch system knows."""
+
+    def report(self, since_s: float) -> None:
+        """Say every minute how many jobs have not joined."""
+        now_s = time.monotonic()
         waiting = [job.job_id for name, job in self.jobs.items() if name not in self.joined]
-        if waiting and now - self.told_s >= REMIND_S:
-            self.told_s = now
+        if waiting and now_s - self.told_s >= REMIND_S:
+            self.told_s = now_s
             which = (
                 "no job has" if len(waiting) == len(self.jobs) else f"{len(waiting)} of {len(self.jobs)} jobs have not"
             )
             tell(
-                f"{self.request.system}: {which} joined the batch yet, for {(now - self.started_s) / 60:.0f} min "
-                f"(the first: {waiting[0]}); jobs that start and cannot reach this machine say so in their logs: "
-                f"{self.logs}"
+                f"{self.title}: {which} joined the batch yet, for {since_s / 60:.0f} min (the first: {waiting[0]}); "
+                f"jobs that start and cannot reach this machine say so in their logs: {self.logs}"
             )
 
-    def cancel(self, job: Any) -> None:
-        """Cancel a job, if it is still there."""
-        with contextlib.suppress(Exception):
-            self.cluster.sync(job.close)
+    def lost(self, number: int, last: str, how: str) -> str:  # noqa: ARG002
+        """Return what is said when job after job has ended."""
+        return (
+            f"{self.flag}: {number} jobs have ended since a run was finished; if runs need longer, or more memory, ask "
+            f"for it by --jobqueue-set; logs: {self.logs}"
+        )
 
-    def close(self) -> None:
-        """End the jobs and the scheduler, and forget the keys."""
-        if self.client is not None:
+    def cancel(self, jobs: Sequence[str]) -> None:
+        """Cancel some jobs, as far as they are still there."""
+        for name in jobs:
+            job = self.jobs.pop(name)
             with contextlib.suppress(Exception):
-                self.client.close(timeout=5)
-        for job in self.jobs.values():
-            self.cancel(job)
-        end_s = time.monotonic() + LEAVING_S
-        while self.cluster is not None and self.cluster.scheduler.workers and time.monotonic() < end_s:
-            time.sleep(0.05)  # a scheduler that ends while its workers do disturbs them
-        if self.cluster is not None:
-            with contextlib.suppress(Exception):
-                self.cluster.close(timeout=5)
-        if self.folder is not None:
-            forget_keys(self.folder)
-            if not self.keeps_logs:
-                shutil.rmtree(self.folder, ignore_errors=True)
+                self.cluster.sync(job.close)
+
+    def cancel_all(self) -> None:
+        """Cancel all jobs."""
+        self.cancel(list(self.jobs))
 
 
 def noting_joined(distributed: Any, joined: set[str]) -> Any:

@@ -1,169 +1,216 @@
-"""Runs done by SLURM: its jobs are Dask workers, which join a scheduler in the process of the batch.
+"""SLURM, and the jobs of a batch in it; see `pogosim.batch.queued_workers`.
 
-The package dask-jobqueue writes the script of the jobs, with what a site says in its jobqueue.yaml, and starts the
-scheduler. Connections are encrypted and authenticated with keys made for the batch, as others use the same network.
+dask-jobqueue writes the script; sbatch, squeue and scancel are called here: they say which jobs wait, and why.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
+import getpass
 import hashlib
-import logging
+import re
 import shutil
-from collections.abc import Generator, Sequence
+import subprocess
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.cluster_jobs import (
-    forget_keys,
-    idle,
-    imported_jobqueue,
-    jobs_for,
-    own_folder,
-    runs_of_workers,
-    scheduler_options,
-    site_settings,
-    with_keys,
-)
-from pogosim.batch.dask_backend import imported, outcomes_of
 from pogosim.batch.errors import BatchError, one_line, tell
-from pogosim.batch.in_job import do_in_job
-from pogosim.batch.run import Outcome, Task
-from pogosim.batch.slurm_jobs import Jobs, check_commands
+from pogosim.batch.run_log import tail
 from pogosim.batch.slurm_options import CORES, MEMORY_PER_CORE_GB, TIME, SlurmJobs
+from pogosim.batch.temporary import TemporaryFolder
 from pogosim.lines import counted
 
+COMMANDS = ("sbatch", "squeue", "scancel")
 POWERS = {"K": 1, "": 2, "M": 2, "G": 3, "T": 4}
+ENDED = re.compile("BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|REVOKED|TIMEOUT")
+# Reasons for which a job waits until it, or the site's limits, are changed.
+BLOCKING_REASONS = re.compile(
+    r"(Partition(Config|NodeLimit|TimeLimit)|BadConstraints|DependencyNeverSatisfied|MaxMemPerLimit"
+    r"|Invalid(Account|QOS)|(Account|QOS)NotAllowed|(Assoc|QOS)(Max|Min)\w+PerJob\w*)$"
+)
+REMIND_S = 60.0
+SHORTEST_POLL_S, LONGEST_POLL_S = 2.0, 30.0  # squeue burdens the controller of the whole cluster
 
 
-class SlurmWorkers:
-    """Jobs of SLURM that do runs, and what they belong to.
+class Slurm:
+    """SLURM. All jobs of a batch have the same script, and a name that no other jobs of the user have."""
 
-    Jobs that are lost are replaced, and their runs are done again. Logs stay if something went wrong.
-    """
+    name = folder = "slurm"
+    title = "SLURM"
+    flag = "--slurm"
 
-    def __init__(self, request: SlurmJobs, keep_idle: bool = False) -> None:
+    def __init__(self, request: SlurmJobs) -> None:
         self.request = request
-        self.keep_idle = keep_idle
-        self.client: Any = None
-        self.cluster: Any = None
-        self.jobs: Jobs | None = None
-        self.first_task: Task | None = None
-        self.is_well = True
+        self.most_jobs = request.jobs
+        self.start_timeout_s = None if request.wait_min is None else 60 * request.wait_min
+        self.jobs: dict[str, tuple[str, str]] = {}  # by their numbers: state, and reason why it waits
+        self.has_started = False
+        self.script = ""
+        self.job_name = ""
+        self.logs = Path()
+        self.is_announced = False
+        self.told, self.told_s = "", time.monotonic()
 
-    def do(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Do runs.
+    def cluster_class(self, jobqueue: Any) -> Any:
+        """Return the class of dask-jobqueue; raises BatchError if a command is missing."""
+        for command in COMMANDS:
+            if shutil.which(command) is None:
+                raise BatchError(f"--slurm: there is no command '{command}'; run it where you submit jobs with sbatch")
+        return jobqueue.SLURMCluster
 
-        Raises:
-            BatchError: A package or a command is missing, or SLURM refuses the jobs; later: no job starts, or all are
-                lost.
-        """
-        if tasks and self.jobs is None:
-            self.start(tasks)
-        elif self.jobs is not None:
-            self.jobs.wanted = max(self.jobs.wanted, jobs_for(len(tasks), self.request.jobs, self.jobs.cores))
-        return self.outcomes(tasks)
+    def settings(self, site: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+        """Return what a job is."""
+        request = self.request
+        cores = request.cores or site.get("cores") or CORES
+        self.logs = Path(site.get("log-directory") or folder)
+        settings: dict[str, Any] = {
+            "cores": cores,
+            "queue": request.partition,
+            "account": request.account,
+            "walltime": request.time or site.get("walltime") or TIME,
+            "log_directory": str(self.logs),
+            "job_extra_directives": [*(site.get("job-extra-directives") or []), *map(directive, request.options)],
+            "scheduler_options": site.get("scheduler-options"),
+            # The worker has the name of its job.
+            "worker_extra_args": [
+                *(site.get("worker-extra-args") or []),
+                *("--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.in_job"),
+            ],
+        }
+        memory = request.memory or (None if "memory" in site else f"{MEMORY_PER_CORE_GB * cores}G")
+        if memory is not None:
+            settings.update(job_mem=memory, memory=bytes_of(memory))
+        return settings
 
-    def start(self, tasks: Sequence[Task]) -> None:
-        """Start the scheduler, and submit the jobs."""
-        dask, distributed = imported("--slurm", "slurm")
-        jobqueue = imported_jobqueue("--slurm")
-        check_commands()
-        self.first_task = tasks[0]
-        self.cluster, self.jobs = started(dask, distributed, jobqueue, tasks, self.request)
-        self.client = distributed.Client(self.cluster)
+    def cannot_start(self, error: str) -> str:
+        """Return what is said when the scheduler cannot be started."""
+        return f"the Dask scheduler cannot be started: {error}"
 
-    def outcomes(self, tasks: Sequence[Task]) -> Generator[Outcome, None, None]:
-        """Yield the outcomes of runs, and look after the jobs meanwhile."""
-        jobs = self.jobs
-        if not tasks or jobs is None:
-            return
-        left = len(tasks)
+    def begin(self, cluster: Any, distributed: Any, temporary: TemporaryFolder) -> None:  # noqa: ARG002
+        """Take the script of the jobs, and cancel those that a killed batch with the same name has left."""
+        self.job_name = job_name(temporary)
+        self.script = cluster.job_script()
+        atexit.register(self.cancel_all)  # whatever happens to the batch before its first run
+        self.cancel_jobs()
 
-        def poll() -> None:
-            jobs.poll(left)
-            if not self.keep_idle:
-                jobs.release(idle(jobs.states, runs_of_workers(self.cluster), jobs.cores, left))
+    def submit(self) -> None:
+        """Submit a job; raises BatchError if it is refused."""
+        done = ask(["sbatch", "--parsable", f"--job-name={self.job_name}"], self.script)
+        job = done.stdout.strip().partition(";")[0]
+        if done.returncode != 0 or not job.isdigit():
+            raise BatchError(f"sbatch refuses the job: {words_of(done.stderr) or words_of(done.stdout)}")
+        self.jobs[job] = ("PENDING", "None")
 
-        ended = outcomes_of(tasks, self.client, poll, do_in_job)
-        try:
-            with contextlib.closing(ended) as outcomes:
-                for outcome in outcomes:
-                    left -= 1
-                    jobs.note_progress()
-                    self.is_well &= not outcome.problem
-                    yield outcome
-        except BatchError:
-            self.is_well = not jobs.has_started
-            raise
+    def submitted(self, counts: str, logs: str) -> str:
+        """Return what is said of the first jobs; of others, `report` says it."""
+        is_first, self.is_announced = not self.is_announced, True
+        return f"submitted {counts}, called {self.job_name}; logs: {logs}" if is_first else ""
 
-    def close(self) -> None:
-        """End the jobs and the scheduler."""
-        if self.jobs is None or self.first_task is None:
-            return
-        folder = log_folder(self.first_task)
-        with contextlib.suppress(Exception):
-            self.client.close(timeout=5)
-        close(self.cluster, self.jobs, folder)
-        if self.is_well and not self.first_task.settings.temporary.is_kept:
-            shutil.rmtree(folder, ignore_errors=True)
+    def wait_s(self, since_s: float) -> float:
+        """Return how long to wait until squeue is asked again."""
+        return min(LONGEST_POLL_S, max(SHORTEST_POLL_S, 0.1 * since_s))
+
+    def ended(self, workers: Mapping[str, int]) -> dict[str, str] | None:  # noqa: ARG002
+        """Note what the jobs do, and forget those that have ended; None: the controller does not answer."""
+        listed = self.listed()
+        if listed is None:
+            return None
+        gone = {}
+        for job in list(self.jobs):
+            state, reason = listed.get(job, ("forgotten by SLURM", ""))
+            if ENDED.match(state) or job not in listed:
+                del self.jobs[job]
+                gone[job] = state
+            else:
+                self.jobs[job] = (state, reason)
+        self.has_started |= bool(gone)
+        return gone
+
+    def listed(self) -> dict[str, tuple[str, str]] | None:
+        """Return the state of each job, and the reason why it waits; None if SLURM does not answer."""
+        done = ask(["squeue", *self.whose(), "--states=all", "--noheader", "--format=%i|%T|%r"])
+        if done.returncode != 0:
+            return None
+        rows = [line.strip().split("|", 2) for line in done.stdout.splitlines()]
+        return {job: (state, reason) for job, state, reason in (row for row in rows if len(row) == 3)}
+
+    def whose(self) -> tuple[str, str]:
+        """Return the options that choose the jobs of the batch."""
+        return f"--user={getpass.getuser()}", f"--name={self.job_name}"
+
+    def check_hope(self, since_s: float) -> None:
+        """Check that a job runs or may still start; raises BatchError if none will."""
+        self.has_started |= any(state != "PENDING" for state, _ in self.jobs.values())
+        is_waiting = bool(self.jobs) and all(state == "PENDING" for state, _ in self.jobs.values())
+        if is_waiting and all(BLOCKING_REASONS.match(reason) for _, reason in self.jobs.values()):
+            raise BatchError(
+                f"SLURM will not start the jobs: {self.summary()}; ask for other resources, or another partition"
+            )
+        if self.start_timeout_s is not None and not self.has_started and since_s >= self.start_timeout_s:
+            raise BatchError(f"no job has started within --slurm-wait: {self.summary()}")
+
+    def summary(self) -> str:
+        """Return what the jobs do: "6 jobs RUNNING, 2 jobs PENDING (Resources)"."""
+        kinds = Counter(
+            f"{state} ({reason})" if state == "PENDING" and reason != "None" else state
+            for state, reason in self.jobs.values()
+        )
+        return ", ".join(f"{counted(number, 'job')} {kind}" for kind, number in sorted(kinds.items()))
+
+    def report(self, since_s: float) -> None:
+        """Say what the jobs do, when that changes, and every minute until one has started."""
+        text, now_s = self.summary(), time.monotonic()
+        if text != self.told or (not self.has_started and now_s - self.told_s >= REMIND_S):
+            waited = f", for {since_s / 60:.0f} min" if text == self.told else ""
+            tell(f"SLURM: {text}{waited}")
+            self.told, self.told_s = text, now_s
+
+    def lost(self, number: int, last: str, how: str) -> str:
+        """Return what is said when job after job has ended."""
+        return (
+            f"SLURM: {number} jobs have ended since a run was finished, the last one, {last}, as {how}"
+            f"{self.last_words(last)}; if runs need longer, or more memory: --slurm-time, --slurm-memory"
+        )
+
+    def last_words(self, job: str) -> str:
+        """Return the last line in the log of a job."""
+        for path in sorted(self.logs.glob(f"*-{job}.err")):
+            if lines := tail(path).split("\n"):
+                return f", and its log {path} ends with: {one_line(lines[-1])}"
+        return ""
+
+    def cancel(self, jobs: Sequence[str]) -> None:
+        """Cancel some jobs, as far as they are still there."""
+        jobs = [job for job in jobs if self.jobs.pop(job, None)]
+        if jobs:
+            ask(["scancel", *jobs])
+
+    def cancel_all(self) -> None:
+        """Cancel all jobs of the batch."""
+        self.cancel_jobs()
+        atexit.unregister(self.cancel_all)
+
+    def cancel_jobs(self) -> None:
+        """Cancel all jobs with the name of the batch, whichever process has submitted them."""
+        self.jobs.clear()
+        if self.job_name:  # without a name, these would be all jobs of the user
+            with contextlib.suppress(OSError):
+                ask(["scancel", *self.whose()])
 
 
-def started(dask: Any, distributed: Any, jobqueue: Any, tasks: Sequence[Task], request: SlurmJobs) -> tuple[Any, Jobs]:
-    """Start the scheduler and submit the jobs.
-
-    Raises:
-        BatchError: It cannot be started, or SLURM refuses the jobs.
-    """
-    task = tasks[0]
-    site = site_settings(dask, "slurm")
-    cores = request.cores or site.get("cores") or CORES
-    folder = own_folder(log_folder(task))
-    settings = job_settings(request, site, cores, folder)
-    settings["scheduler_options"] = scheduler_options(task.retries, site.get("scheduler-options"))
-    try:
-        settings["security"] = with_keys(distributed.Security, folder)
-        cluster = jobqueue.SLURMCluster(silence_logs=logging.CRITICAL, **settings)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise BatchError(f"--slurm: the Dask scheduler cannot be started: {one_line(error)}") from None
-    wanted = jobs_for(len(tasks), request.jobs, cores)
-    start_timeout_s = None if request.wait_min is None else 60 * request.wait_min
-    jobs = Jobs(cluster.job_script(), job_name(task), wanted, cores, start_timeout_s, settings["log_directory"])
-    atexit.register(jobs.cancel)  # whatever happens to the batch before its first run
-    try:
-        jobs.cancel()
-        jobs.submit(wanted)
-    except BaseException:
-        close(cluster, jobs, folder)
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    counts = f"{counted(wanted, 'job')} of {counted(cores, 'core')}"
-    tell(f"SLURM: submitted {counts}, called {job_name(task)}; logs: {settings['log_directory']}")
-    return cluster, jobs
+def words_of(text: str) -> str:
+    """Return what a command of SLURM says, in one line."""
+    lines = [re.sub(r"^\w+: (error: )?", "", line) for line in text.splitlines()]
+    return one_line("; ".join(line for line in lines if line.strip()))
 
 
-def job_settings(request: SlurmJobs, site: dict[str, Any], cores: int, folder: Path) -> dict[str, Any]:
-    """Return the arguments of SLURMCluster that say what a job is."""
-    settings: dict[str, Any] = {
-        "cores": cores,
-        "processes": 1,  # simulators are processes of their own, which its threads wait for
-        "nanny": False,  # SLURM sees when a worker ends
-        "queue": request.partition,
-        "account": request.account,
-        "walltime": request.time or site.get("walltime") or TIME,
-        "log_directory": str(site.get("log-directory") or folder),
-        "job_extra_directives": [*(site.get("job-extra-directives") or []), *map(directive, request.options)],
-        # The worker has the name of its job.
-        "worker_extra_args": [
-            *(site.get("worker-extra-args") or []),
-            *("--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.in_job"),
-        ],
-    }
-    memory = request.memory or (None if "memory" in site else f"{MEMORY_PER_CORE_GB * cores}G")
-    if memory is not None:
-        settings.update(job_mem=memory, memory=bytes_of(memory))
-    return settings
+def ask(command: Sequence[str], script: str = "") -> subprocess.CompletedProcess[str]:
+    """Run a command of SLURM. Ctrl-C reaches the batch alone."""
+    return subprocess.run(command, input=script, capture_output=True, text=True, check=False, start_new_session=True)
 
 
 def directive(option: str) -> str:
@@ -177,20 +224,6 @@ def bytes_of(memory: str) -> int:
     return int(memory.removesuffix(unit)) * int(1024 ** POWERS[unit])
 
 
-def log_folder(task: Task) -> Path:
-    """Return the folder for logs of jobs."""
-    return task.settings.temporary.path / f"slurm_{task.settings.temporary.batch}"
-
-
-def job_name(task: Task) -> str:
+def job_name(temporary: TemporaryFolder) -> str:
     """Return the name of all jobs of a batch: the same whenever the same command is given."""
-    return f"pogobatch-{hashlib.sha256(str(task.settings.temporary.done).encode()).hexdigest()[:8]}"
-
-
-def close(cluster: Any, jobs: Jobs, folder: Path) -> None:
-    """End the jobs, then the scheduler, and forget the keys."""
-    jobs.cancel()
-    atexit.unregister(jobs.cancel)
-    with contextlib.suppress(Exception):
-        cluster.close(timeout=5)
-    forget_keys(folder)
+    return f"pogobatch-{hashlib.sha256(str(temporary.done).encode()).hexdigest()[:8]}"
