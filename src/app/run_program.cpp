@@ -177,11 +177,11 @@ void check_state_file(Scenario const& scenario, CommandLine const& options) {
 }
 
 /// Null without --from-state. The run has the seed of the state.
-std::shared_ptr<SavedState const> take_state(Scenario& scenario, CommandLine const& options) {
+std::shared_ptr<StateFile const> take_state(Scenario& scenario, CommandLine const& options) {
     if (options.from_state.empty()) {
         return nullptr;
     }
-    auto saved = std::make_shared<SavedState>(read_state(options.from_state));
+    auto saved = std::make_shared<StateFile>(read_state(options.from_state));
     bool const is_set =
         std::ranges::any_of(options.overrides, [](auto const& own) { return own.starts_with("seed="); });
     std::optional<std::uint32_t> const wanted = options.seed ? options.seed : is_set ? scenario.seed : std::nullopt;
@@ -257,7 +257,7 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     check_used_files(scenario, options.video);
     check_profile_file(scenario, options);
     check_state_file(scenario, options);
-    std::shared_ptr<SavedState const> const from_state = take_state(scenario, options);
+    std::shared_ptr<StateFile const> const from_state = take_state(scenario, options);
     logging.minimal = scenario.output.log_format == LogFormat::minimal;
     if (scenario.output.enable_console_logging) {
         logging.file = scenario.output.console_filename;

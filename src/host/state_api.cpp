@@ -4,13 +4,13 @@
 #include "base/error.hpp"
 #include "host/hosted_run.hpp"
 #include "host/status.hpp"
-#include "sim/saved_run.hpp"
+#include "sim/saved_state.hpp"
 
 using namespace pogosim;
 
 struct pogosim_state {
     std::uint64_t run;  // its number
-    std::unique_ptr<SavedRun> saved;
+    std::unique_ptr<SavedState> saved;
 };
 
 namespace {

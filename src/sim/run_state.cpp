@@ -60,7 +60,7 @@ void Simulation::append_for_process(StateWriter& state) {
     recorder_.append_state(state);
 }
 
-SavedState Simulation::kind_of_state() const {
+StateFile Simulation::kind_of_state() const {
     return {.identity = identity_,
             .seed = seed_,
             .time_s = world_.time_s(),
@@ -75,7 +75,7 @@ void Simulation::check_states() {
         identity_ = identity_of(controllers_.image(), scenario_, world_, brains_, inputs_);
     }
     if (options_.from_state) {
-        SavedState const& saved = *options_.from_state;
+        StateFile const& saved = *options_.from_state;
         check_identity(saved, identity_);
         std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
         // A run that was killed at its very end has nothing left to do.
@@ -131,7 +131,7 @@ void Simulation::go_on_unsaved(std::string const& reason) {
 }
 
 /// After start(): all of the run becomes what it was, but for what belongs to this process.
-void Simulation::go_on_from(SavedState const& saved) {
+void Simulation::go_on_from(StateFile const& saved) {
     try {
         StateReader state(saved.state);
         take_world(world_, state);

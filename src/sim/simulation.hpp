@@ -47,7 +47,7 @@ namespace pogosim {
 
 class Profile;
 class WindowDriver;
-struct SavedRun;
+struct SavedState;
 struct FirmwareServices;
 
 struct RunOptions {
@@ -64,13 +64,13 @@ struct RunOptions {
     std::optional<int> gdb_port{};                   // at which gdb looks at a robot's firmware; absent: it does not
     std::optional<std::uint32_t> gdb_robot{};        // id; absent: the first one that runs firmware
     bool window = false;
-    bool close_at_end = false;                       // else the window stays open when the simulated time is over
-    std::string program_name{};                      // for the window's title
-    std::string save_state{};                        // file that gets the state; empty: none
-    std::optional<double> save_state_at_s{};         // absent: at the end of the run
-    std::optional<double> save_state_every_s{};      // of wall-clock time, where it can be saved; absent: once
-    std::shared_ptr<SavedState const> from_state{};  // from which the run goes on; null: it begins anew
-    std::optional<Restart> restarted{};              // by the user, in the window of the run before
+    bool close_at_end = false;                      // else the window stays open when the simulated time is over
+    std::string program_name{};                     // for the window's title
+    std::string save_state{};                       // file that gets the state; empty: none
+    std::optional<double> save_state_at_s{};        // absent: at the end of the run
+    std::optional<double> save_state_every_s{};     // of wall-clock time, where it can be saved; absent: once
+    std::shared_ptr<StateFile const> from_state{};  // from which the run goes on; null: it begins anew
+    std::optional<Restart> restarted{};             // by the user, in the window of the run before
     std::function<RestartCheck()> check_restart = [] { return RestartCheck{}; };  // see WindowSetup
 };
 
@@ -163,18 +163,18 @@ public:
     bool set_parameter(std::string const& name, std::string const& yaml_value);
 
     /// Copies the state between two steps. Throws ConfigError for a run whose state cannot be copied.
-    std::unique_ptr<SavedRun> save();
+    std::unique_ptr<SavedState> save();
 
     /// Why it cannot, but for a physics engine that cannot be copied; empty: it can.
     std::string why_not_saved() const;
 
     /// Goes on from a state of this run, as it did then. Arrays of the world stay where they are.
-    void restore(SavedRun const& saved);
+    void restore(SavedState const& saved);
 
     /// The state for another process, to go on from it there, and what kind of run it is of. Throws ConfigError, see
     /// Brain::append_for_process().
     void append_for_process(StateWriter& state);
-    SavedState kind_of_state() const;
+    StateFile kind_of_state() const;
 
     /// Why there is no such state in this run; and why not between these two steps. Empty: there is.
     std::string why_never_for_process() const;
@@ -254,7 +254,7 @@ private:
     std::optional<UserFailure> run_steps();
     void check_states();
     void check_saving();
-    void go_on_from(SavedState const& saved);
+    void go_on_from(StateFile const& saved);
     void save_state_if_due();
     bool is_state_due() const;
     void tell_of_late_state();

@@ -123,7 +123,7 @@ std::vector<std::string> entries_of(std::string const& text) {
     return entries;
 }
 
-[[noreturn]] void refuse(SavedState const& saved, std::string const& reason) {
+[[noreturn]] void refuse(StateFile const& saved, std::string const& reason) {
     throw ConfigError(fmt::format("--from-state: '{}' {}", saved.file.string(), reason));
 }
 
@@ -161,7 +161,7 @@ std::vector<std::byte> bytes_of(std::istream& file, std::size_t count) {
 }
 
 /// `bytes`: of the whole file, whose memory the state takes over. Throws ForeignState.
-SavedState state_in(std::vector<std::byte> bytes) {
+StateFile state_in(std::vector<std::byte> bytes) {
     if (!text_of(bytes).starts_with(kSignature)) {
         throw ForeignState("is not the state of a run");
     }
@@ -189,7 +189,7 @@ SavedState state_in(std::vector<std::byte> bytes) {
     if (fnv_1a(text_of(bytes).substr(0, kHeadBytes + count)) != checksum) {
         throw ForeignState("is damaged: its checksum is not that of its bytes");
     }
-    SavedState saved;
+    StateFile saved;
     std::size_t size = 0;
     content(saved, size);
     if (size != content.rest().size()) {
@@ -234,8 +234,8 @@ RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, Wor
     return identity;
 }
 
-SavedState read_state(fs::path const& file) {
-    SavedState unread{.file = file};
+StateFile read_state(fs::path const& file) {
+    StateFile unread{.file = file};
     std::error_code error;
     if (!fs::exists(file, error)) {
         refuse(unread, fmt::format("does not exist in '{}'", fs::current_path(error).string()));
@@ -253,7 +253,7 @@ SavedState read_state(fs::path const& file) {
         refuse(unread, "is empty: the run that was to write it has not");
     }
     try {
-        SavedState saved = state_in(std::move(bytes));
+        StateFile saved = state_in(std::move(bytes));
         saved.file = file;
         return saved;
     } catch (ForeignState const& foreign) {
@@ -261,7 +261,7 @@ SavedState read_state(fs::path const& file) {
     }
 }
 
-void check_identity(SavedState const& saved, RunIdentity const& identity) {
+void check_identity(StateFile const& saved, RunIdentity const& identity) {
     RunIdentity const& before = saved.identity;
     if (before.version != identity.version) {
         refuse(saved, fmt::format("is of Pogosim {}, and this is {}: go on with that version", before.version,
@@ -312,7 +312,7 @@ StateOutput::StateOutput(fs::path const& file) : name_(file) {
     }
 }
 
-void StateOutput::write(SavedState const& kind, std::span<std::byte const> state) {
+void StateOutput::write(StateFile const& kind, std::span<std::byte const> state) {
     StateWriter before;
     before(kind, state.size());
     StateWriter head;

@@ -3,7 +3,7 @@
 //     8 bytes  "PGSTATE\0"
 //     u32      version of this format
 //     u64      bytes of what follows, but for the checksum
-//     ...      what kind of run it is (SavedState without its last member)
+//     ...      what kind of run it is (StateFile without its last member)
 //     u64      bytes of the state
 //     ...      the state
 //     u64      FNV-1a over all bytes so far
@@ -47,7 +47,8 @@ struct RunIdentity {
 RunIdentity identity_of(ProgramImage const& image, Scenario const& scenario, World const& world, Brains const& brains,
                         std::uint64_t inputs);
 
-struct SavedState {
+/// What the file of --save-state holds. The copy of a run in memory is a SavedState.
+struct StateFile {
     std::filesystem::path file{};  // from which it was read
     RunIdentity identity{};
     std::uint32_t seed = 0;
@@ -65,10 +66,10 @@ struct SavedState {
 };
 
 /// Throws ConfigError for anything but the complete file of a state.
-SavedState read_state(std::filesystem::path const& file);
+StateFile read_state(std::filesystem::path const& file);
 
 /// Throws ConfigError, which says what is another one, if a run of this identity cannot go on from the state.
-void check_identity(SavedState const& saved, RunIdentity const& identity);
+void check_identity(StateFile const& saved, RunIdentity const& identity);
 
 /// The file of --save-state: while this exists, no other run can write it.
 class StateOutput {
@@ -78,7 +79,7 @@ public:
 
     /// Replaces the file at once as a whole. Throws OutputError; the file is then as before.
     /// `kind`: all but the bytes of the state.
-    void write(SavedState const& kind, std::span<std::byte const> state);
+    void write(StateFile const& kind, std::span<std::byte const> state);
 
 private:
     std::filesystem::path name_;

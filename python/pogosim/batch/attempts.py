@@ -22,9 +22,9 @@ from pogosim.batch.run import FRAMES, Outcome, Task
 from pogosim.batch.run_files import is_nested, place_of
 from pogosim.batch.run_log import CONFIGURATION, LOG, OWN, tail, warnings_in, with_last_line
 from pogosim.batch.run_server import ServerLostError
-from pogosim.batch.saved_runs import FROM_OUTSIDE, SavedRun, folder_of, held
 from pogosim.batch.simulators import Saving, simulators
 from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.unfinished_runs import FROM_OUTSIDE, UnfinishedRun, folder_of, held
 from pogosim.firmware import is_firmware
 from pogosim.installation import InstallationError, find_installation
 
@@ -137,17 +137,17 @@ def attempt_in_parts(task: Task, number: int) -> Outcome:
     with held(folder) as its_lock:
         if its_lock is None:
             return attempt_alone(task, number)
-        saved = SavedRun(folder, task, number)
-        outcome = with_moved_file(attempt_from_state(saved, its_lock), task)
+        run = UnfinishedRun(folder, task, number)
+        outcome = with_moved_file(attempt_from_state(run, its_lock), task)
         is_kept = task.settings.temporary.is_kept
         if outcome.file is not None:
-            saved.finish()
+            run.finish()
             if not is_kept:
                 shutil.rmtree(folder, ignore_errors=True)
         return replace(outcome, folder=str(folder) if is_kept or outcome.problem else "")
 
 
-def attempt_from_state(saved: SavedRun, its_lock: IO[bytes], configuration: str = CONFIGURATION) -> Outcome:
+def attempt_from_state(run: UnfinishedRun, its_lock: IO[bytes], configuration: str = CONFIGURATION) -> Outcome:
     """Do a run once, in its folder, from its state if there is one.
 
     A run that is ended from outside goes on; one that fails by itself begins anew the next time. So does, at once, one
@@ -160,34 +160,34 @@ def attempt_from_state(saved: SavedRun, its_lock: IO[bytes], configuration: str 
     said = ""
     simulator_s = 0.0
     while True:
-        if not saved.has_state:
-            if saved.others():
+        if not run.has_state:
+            if run.others():
                 said += "the state in its folder is of another run, so the run begins anew\n"
-            saved.begin()
-        goes_on, before_ns = saved.has_state, saved.saved_at_ns
+            run.begin()
+        goes_on, before_ns = run.has_state, run.saved_at_ns
         outcome = attempt_in(
-            saved.folder, saved.task, saved.number, configuration, Saving(tuple(saved.arguments()), its_lock, goes_on)
+            run.folder, run.task, run.number, configuration, Saving(tuple(run.arguments()), its_lock, goes_on)
         )
         simulator_s += outcome.simulator_s
         if goes_on and (refused := REFUSED_STATE.search(outcome.log)):
             said += f"{refused[1]}; so the run begins anew\n"
-        elif outcome.code in FROM_OUTSIDE and saved.saved_at_ns != before_ns:
+        elif outcome.code in FROM_OUTSIDE and run.saved_at_ns != before_ns:
             continue
         elif outcome.problem:
             if outcome.code not in FROM_OUTSIDE and not outcome.is_fatal:
-                saved.state.unlink(missing_ok=True)
+                run.state.unlink(missing_ok=True)
             break
         elif not goes_on:
             break
         else:
             try:
-                saved.join()
-                file = saved.task.read(saved.data, saved.task.replacement_in(saved.number))
+                run.join()
+                file = run.task.read(run.data, run.task.replacement_in(run.number))
                 outcome = replace(outcome, file=file, problem="" if file else "its data file is damaged")
                 break
             except BatchError as error:
                 said += f"{error}; so the run begins anew\n"
-        saved.state.unlink(missing_ok=True)
+        run.state.unlink(missing_ok=True)
     log = outcome.log if outcome.problem else "\n".join(filter(None, (said.rstrip(), outcome.log)))
     return replace(outcome, log=log, simulator_s=simulator_s)
 

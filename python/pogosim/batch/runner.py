@@ -24,12 +24,12 @@ from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
 from pogosim.batch.results import check_output
 from pogosim.batch.run_policy import QUIET, RunPolicy
-from pogosim.batch.saved_runs import tell_of_states
 from pogosim.batch.seeds import listed_seeds, range_text
 from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.slurm_options import SlurmJobs
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.unfinished_runs import tell_of_states
 from pogosim.run_columns import RETRY
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each

@@ -24,11 +24,11 @@ from pogosim.batch.run import FRAMES, Outcome, Task
 from pogosim.batch.run_data import RunFile, read_run, shared
 from pogosim.batch.run_log import EFFECTIVE, with_last_line
 from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.saved_runs import SavedRun, held
 from pogosim.batch.seeds import listed_seeds, seeds_between
 from pogosim.batch.simulators import simulators
 from pogosim.batch.tasks import Combination
 from pogosim.batch.temporary import TemporaryFolder, batch_name
+from pogosim.batch.unfinished_runs import UnfinishedRun, held
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, RUN, SEED
 from pogosim.table_metadata import parse_configuration
@@ -200,10 +200,10 @@ def saving_states(folder: Path, task: Task, number: int) -> Outcome:
     with held(folder) as its_lock:
         if its_lock is None:
             raise BatchError(f"another process does a run in {folder}; wait for it, or choose another folder with -o")
-        saved = SavedRun(folder, task, number)
-        outcome = attempt_from_state(saved, its_lock, EFFECTIVE)
+        run = UnfinishedRun(folder, task, number)
+        outcome = attempt_from_state(run, its_lock, EFFECTIVE)
         if outcome.file is not None:
-            saved.finish()
+            run.finish()
         for line in outcome.log.splitlines() if outcome.file is not None else ():
             log.warning("%s", line)
         return outcome

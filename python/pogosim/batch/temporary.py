@@ -49,21 +49,21 @@ class TemporaryFolder:
         return self.path / f"done_{self.batch}"
 
     @property
-    def saved(self) -> Path:
+    def unfinished(self) -> Path:
         """The folder of unfinished runs that go on from their states."""
         return self.path / f"sim_saved_{self.batch}"
 
     def states(self) -> list[Path]:
         """Return the states from which runs go on; a run that was killed early has left an empty file."""
-        return [path for path in self.saved.glob(f"*/*{STATE}") if path.stat().st_size > 0]
+        return [path for path in self.unfinished.glob(f"*/*{STATE}") if path.stat().st_size > 0]
 
     def kept(self) -> str:
         """Return what an ended batch has left: "2 finished runs and the state of 1 unfinished run"; empty: nothing."""
         finished = sum(1 for _ in self.done.glob("*.feather"))
         states = len(self.states())
         runs = f"{finished} finished run{'' if finished == 1 else 's'}" if finished else ""
-        unfinished = "the state of 1 unfinished run" if states == 1 else f"the states of {states} unfinished runs"
-        return " and ".join(text for text in (runs, unfinished if states else "") if text)
+        states_of = "the state of 1 unfinished run" if states == 1 else f"the states of {states} unfinished runs"
+        return " and ".join(text for text in (runs, states_of if states else "") if text)
 
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
@@ -94,7 +94,7 @@ class TemporaryFolder:
         """Remove the data files of single runs, unless folders are kept."""
         if not self.is_kept:
             shutil.rmtree(self.done, ignore_errors=True)
-            shutil.rmtree(self.saved, ignore_errors=True)
+            shutil.rmtree(self.unfinished, ignore_errors=True)
 
     def tidy(self, configurations: Iterable[str]) -> None:
         """Remove what no later batch needs: configurations of combinations, and folders without a finished run."""

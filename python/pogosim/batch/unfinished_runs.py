@@ -31,7 +31,7 @@ log = logging.getLogger("pogobatch")
 
 
 @dataclass(frozen=True)
-class SavedRun:
+class UnfinishedRun:
     """What is kept of a run until it is done, in a folder that is the same whenever it is begun.
 
     The folder has the state, whose name says which run it is of, and the files of the run, in parts. The simulator
@@ -130,19 +130,19 @@ def tell_of_states(waiting: Sequence[Task], settings: RunSettings, program: str)
         log.warning("--save-states: %s is a Python file, whose runs cannot be saved", program)
         return
     if going_on:
-        tell(f"{going_on} of {len(waiting)} runs go on from their states, in {temporary.saved}")
+        tell(f"{going_on} of {len(waiting)} runs go on from their states, in {temporary.unfinished}")
     if others := len(found) - going_on:
         log.warning(
             "%d states in %s are of runs with another configuration, program or seed: nothing goes on from them",
             others,
-            temporary.saved,
+            temporary.unfinished,
         )
 
 
 def folder_of(task: Task, number: int) -> Path:
     """Return the folder of a run in the folder for temporary files."""
     temporary = task.settings.temporary
-    return temporary.saved / f"{task.key}_{task.seed_of(number)}"
+    return temporary.unfinished / f"{task.key}_{task.seed_of(number)}"
 
 
 @contextlib.contextmanager

@@ -13,7 +13,7 @@
 namespace pogosim {
 
 /// Only the run that it is a copy of can go on from it, in the same process.
-struct SavedRun {
+struct SavedState {
     World world;
     Lighting lighting;
     std::unique_ptr<PhysicsEngine> physics;

@@ -1,4 +1,4 @@
-#include "sim/saved_run.hpp"
+#include "sim/saved_state.hpp"
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ std::string Simulation::why_not_saved() const {
     return "";
 }
 
-std::unique_ptr<SavedRun> Simulation::save() {
+std::unique_ptr<SavedState> Simulation::save() {
     Thread const thread(*this);
     if (std::string const reason = why_not_saved(); !reason.empty()) {
         throw ConfigError(fmt::format("the state of this run cannot be saved: {}", reason));
@@ -43,19 +43,19 @@ std::unique_ptr<SavedRun> Simulation::save() {
         throw ConfigError(fmt::format("the state of this run cannot be saved: its physics engine ({}) cannot be copied",
                                       physics_engine_behind(scenario_.physics_engine)));
     }
-    auto saved = std::make_unique<SavedRun>(SavedRun{.world = world_,
-                                                     .lighting = lighting_,
-                                                     .physics = std::move(physics),
-                                                     .broken_links = broken_links_,
-                                                     .brains = {},
-                                                     .stop_requested = services_.stop_requested});
+    auto saved = std::make_unique<SavedState>(SavedState{.world = world_,
+                                                         .lighting = lighting_,
+                                                         .physics = std::move(physics),
+                                                         .broken_links = broken_links_,
+                                                         .brains = {},
+                                                         .stop_requested = services_.stop_requested});
     for (auto const& brain : brains_) {
         saved->brains.push_back(brain->save());
     }
     return saved;
 }
 
-void Simulation::restore(SavedRun const& saved) {
+void Simulation::restore(SavedState const& saved) {
     Thread const thread(*this);
     assert(saved.brains.size() == brains_.size());
     world_ = saved.world;
