@@ -13,13 +13,9 @@ from collections.abc import Sequence
 
 from pogosim.batch.campaign import LocalCampaignError, LocalCampaignResult, run_local_campaign
 from pogosim.batch.command_line import main
-from pogosim.batch.errors import BatchError
-from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts
-from pogosim.batch.options import expand_batch_options
-from pogosim.batch.paths import get_by_dotted_path, set_in_dict
-from pogosim.batch.runner import PogobotBatchRunner
-from pogosim.batch.single_task import TaskArtifact, TaskError, execute_task
-from pogosim.batch.sweeps import (
+from pogosim.batch.configurations.options import expand_batch_options
+from pogosim.batch.configurations.paths import get_by_dotted_path, set_in_dict
+from pogosim.batch.configurations.sweeps import (
     build_combinations,
     compute_extra_columns,
     compute_result_filename,
@@ -28,6 +24,10 @@ from pogosim.batch.sweeps import (
     make_rundra_sweep_config,
     resolve_batch_defaults,
 )
+from pogosim.batch.errors import BatchError
+from pogosim.batch.merging import discover_task_artifacts, merge_task_artifacts
+from pogosim.batch.runner import PogobotBatchRunner
+from pogosim.batch.single_task import TaskArtifact, TaskError, execute_task
 from pogosim.command.main import pogobatch
 
 PogobatchError = BatchError  # its name in scripts written for the original simulator

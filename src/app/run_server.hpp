@@ -5,8 +5,8 @@
 // may keep something else (memory that it allocates, static objects in C++, a library with a state of its own), each
 // run has a copy of the process instead (fork), made before the first run.
 //
-// The other side (python/pogosim/batch/run_server.py) has one end of a pair of sockets. This end is the descriptor that
-// the variable POGOSIM_SERVE_RUNS of the environment names:
+// The other side (python/pogosim/batch/runs/run_server.py) has one end of a pair of sockets. This end is the descriptor
+// that the variable POGOSIM_SERVE_RUNS of the environment names:
 //
 //     from here                                               to here
 //     ----------------------------------------------------------------------------------------------

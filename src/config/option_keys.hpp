@@ -1,6 +1,6 @@
 // The keys with which a configuration offers alternative values, for batches and optimisations, and the search for
 // misspelt ones, which would silently leave out a part of a study. Python has the same lists
-// (pogosim/batch/option_words.py).
+// (pogosim/batch/configurations/option_words.py).
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,7 @@ import pytest
 from batches import COMMAND, ENVIRONMENT, arguments, batch, batch_apart, ended, results, run_main, script, write_options
 from pogosim.batch import reports
 from pogosim.batch.command_line import parser
-from pogosim.batch.identity import seed_of
+from pogosim.batch.runs.identity import seed_of
 from pogosim.extras import installing
 from running import ROOT, example
 

@@ -9,17 +9,17 @@ from typing import Any
 
 import pyarrow as pa
 import pytest
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.batch.execution import Execution
-from pogosim.batch.parts import Part
-from pogosim.batch.results import replacement, write_results
-from pogosim.batch.run import Outcome, RunSettings, Task
-from pogosim.batch.run_data import read_run
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.result_files.parts import Part
+from pogosim.batch.result_files.results import replacement, write_results
+from pogosim.batch.runs.run import Outcome, RunSettings, Task
+from pogosim.batch.runs.run_data import read_run
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.tasks import Combination
+from pogosim.batch.runs.temporary import TemporaryFolder
 from pogosim.utils import load_dataframe
 from pyarrow import feather
 

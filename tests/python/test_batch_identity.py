@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 import yaml
-from pogosim.batch.identity import config_hash, program_digest
-from pogosim.batch.run import RunSettings, Task
-from pogosim.batch.run_files import found_beside
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.tasks import tasks_of
-from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.runs.identity import config_hash, program_digest
+from pogosim.batch.runs.run import RunSettings, Task
+from pogosim.batch.runs.run_files import found_beside
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.tasks import tasks_of
+from pogosim.batch.runs.temporary import TemporaryFolder
 from running import LIBRARY
 
 Tasks = Callable[..., list[Task]]

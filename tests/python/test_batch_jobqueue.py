@@ -14,10 +14,10 @@ import pandas as pd
 import pytest
 from batches import ENVIRONMENT, arguments, batch, results, script
 from batches import write_options as write
-from pogosim.batch import jobqueue
 from pogosim.batch.errors import BatchError
-from pogosim.batch.jobqueue import JobqueueSystem, words_of
-from pogosim.batch.jobqueue_options import CLUSTERS, QueuedJobs, setting
+from pogosim.batch.workers import jobqueue
+from pogosim.batch.workers.jobqueue import JobqueueSystem, words_of
+from pogosim.batch.workers.jobqueue_options import CLUSTERS, QueuedJobs, setting
 from running import Run, example
 from searches import COMMAND as SEARCH
 from searches import history, search, write_search

@@ -12,10 +12,10 @@ import pytest
 from batches import batch, write_options
 from hypothesis import given
 from hypothesis import strategies as st
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.names import NamesError, file_name, new_columns
-from pogosim.batch.option_words import CombinationsError
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration, dump_configuration
+from pogosim.batch.configurations.names import NamesError, file_name, new_columns
+from pogosim.batch.configurations.option_words import CombinationsError
 from pogosim.pogobatch import BatchError, expand_batch_options, get_by_dotted_path, set_in_dict
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml
 from running import ROOT, example, run_command

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from batches import batch, subcommand
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration
-from pogosim.batch.places import line_in
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.runs.places import line_in
 from running import ROOT
 from searches import search, write_search
 

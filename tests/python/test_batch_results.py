@@ -11,9 +11,9 @@ import pytest
 from batches import batch, batch_apart, ended, results, write_options
 from conftest import Compile
 from pogosim.batch.errors import BatchError
-from pogosim.batch.parts import Part
-from pogosim.batch.results import write_results
-from pogosim.batch.run_data import ROWS_PER_BATCH, RunFile, read_run
+from pogosim.batch.result_files.parts import Part
+from pogosim.batch.result_files.results import write_results
+from pogosim.batch.runs.run_data import ROWS_PER_BATCH, RunFile, read_run
 from pogosim.utils import load_dataframe
 from pyarrow import feather, ipc
 from running import ROOT, example, run_command

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from batches import batch, results, run_main, script, subcommand, write_options
+from pogosim.batch.configurations.seeds import LARGEST, listed_seeds, replacements, seeds_between
 from pogosim.batch.errors import BatchError
-from pogosim.batch.seeds import LARGEST, listed_seeds, replacements, seeds_between
 from pogosim.pogobatch import main
 from pogosim.utils import load_dataframe
 from running import example

@@ -14,13 +14,13 @@ from typing import Any
 
 import pytest
 from batches import batch, results, start_batch, wait_for_simulators, wait_until_gone, write_options
-from pogosim.batch import run_server
 from pogosim.batch.execution import Execution
-from pogosim.batch.run import RunSettings, Task
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.run_server import NotServedError, RunServer, RunServers, ServerLostError
-from pogosim.batch.simulators import Simulators
-from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.runs import run_server
+from pogosim.batch.runs.run import RunSettings, Task
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.run_server import NotServedError, RunServer, RunServers, ServerLostError
+from pogosim.batch.runs.simulators import Simulators
+from pogosim.batch.runs.temporary import TemporaryFolder
 from running import Run, compile_text, example, write_scene
 
 IN_PLACE = "a process does many runs, one after the other"

@@ -11,17 +11,17 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from pogosim.batch import queued_workers
-from pogosim.batch.backends import by_jobs
-from pogosim.batch.cluster_jobs import LOST_PER_JOB, own_folder, with_keys
-from pogosim.batch.cluster_jobs import idle as idle_of
 from pogosim.batch.errors import BatchError
-from pogosim.batch.queued_workers import EVERY_JOB, QueuedWorkers
-from pogosim.batch.run import Outcome, RunSettings, Task
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.slurm import Slurm, bytes_of
-from pogosim.batch.slurm_options import SlurmJobs
-from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.runs.run import Outcome, RunSettings, Task
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.temporary import TemporaryFolder
+from pogosim.batch.workers import queued_workers
+from pogosim.batch.workers.backends import by_jobs
+from pogosim.batch.workers.cluster_jobs import LOST_PER_JOB, own_folder, with_keys
+from pogosim.batch.workers.cluster_jobs import idle as idle_of
+from pogosim.batch.workers.queued_workers import EVERY_JOB, QueuedWorkers
+from pogosim.batch.workers.slurm import Slurm, bytes_of
+from pogosim.batch.workers.slurm_options import SlurmJobs
 
 SBATCH = 'cat > script; echo "sbatch $*" >> asked; echo x >> jobs; echo "$(wc -l < jobs);cluster"'
 SQUEUE = 'echo "squeue $*" >> asked; cat states 2>/dev/null'
@@ -96,7 +96,7 @@ def test_job_has_one_hour_and_two_gigabytes_per_core_by_default() -> None:
     assert (settings["walltime"], settings["job_mem"], settings["memory"]) == ("01:00:00", "6G", 6 * 1024**3)
     assert (settings["queue"], settings["account"]) == (None, None)
     assert (settings["log_directory"], settings["job_extra_directives"]) == ("/logs", [])
-    assert settings["worker_extra_args"] == ["--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.in_job"]
+    assert settings["worker_extra_args"] == ["--name", "$SLURM_JOB_ID", "--preload", "pogosim.batch.workers.in_job"]
 
 
 def test_site_says_what_a_job_is_where_the_user_does_not() -> None:

@@ -26,7 +26,7 @@ from batches import (
     write_options,
 )
 from pogosim.batch.command_line import main, parser
-from pogosim.batch.run_files import with_files_beside
+from pogosim.batch.runs.run_files import with_files_beside
 from pogosim.batch.subcommands import SUBCOMMANDS, subparser
 from pogosim.utils import load_dataframe
 from running import ROOT, Run, example

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 from batches import COMMAND, ENVIRONMENT, results, run_main, script, subcommand, write_options
 from pogosim.batch.completeness import less
-from pogosim.batch.run_counts import RunCounts, gaps
+from pogosim.batch.result_files.run_counts import RunCounts, gaps
 from pogosim.pogobatch import PogobatchError, TaskError, discover_task_artifacts, execute_task, merge_task_artifacts
 from pogosim.utils import load_dataframe
 from pyarrow import feather

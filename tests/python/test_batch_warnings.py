@@ -10,8 +10,8 @@ from typing import cast
 import pytest
 from batches import batch, script, start_batch, write_options
 from pogosim.batch.reports import SHOWN_WARNINGS, report_warnings
-from pogosim.batch.run_log import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
-from pogosim.batch.running import Running, Watch
+from pogosim.batch.runs.run_log import LOG, LOG_LINES, MAX_WARNINGS, tail, warnings_in
+from pogosim.batch.runs.running import Running, Watch
 from running import compile_text
 
 
@@ -115,7 +115,7 @@ def test_time_without_an_end_of_a_run_is_said_in_ever_longer_intervals(
     watch = Watch()
     watch.begin()
     now_s = [watch.last_end_s]
-    monkeypatch.setattr("pogosim.batch.running.time.monotonic", lambda: now_s[0])
+    monkeypatch.setattr("pogosim.batch.runs.running.time.monotonic", lambda: now_s[0])
     running = Running(cast("subprocess.Popen[bytes]", None), tmp_path / "log.txt")
     caplog.set_level("INFO", logger="pogobatch")
     for minute in range(1, 11):

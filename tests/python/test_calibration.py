@@ -15,10 +15,10 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from pogosim.batch.backends import Workers
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.rows import Runs
-from pogosim.batch.run_policy import RunPolicy
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.workers.backends import Workers
 from pogosim.calibration import rounding, statistics
 from pogosim.calibration.command import main
 from pogosim.calibration.fit import bias_range

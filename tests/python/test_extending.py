@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from pogosim import extensions
-from pogosim.batch.run_files import with_files_beside
+from pogosim.batch.runs.run_files import with_files_beside
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from running import ROOT, Run, build_folder, example, ran, run, write_scene

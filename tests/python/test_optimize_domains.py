@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.option_words import CombinationsError, OptionsError
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.option_words import CombinationsError, OptionsError
 from pogosim.optimize.domain import Categorical, Real, Whole, domain_of
 from pogosim.optimize.variables import Space, variables_of
 

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 import yaml
 from batches import run_main, script
-from pogosim.batch.attempts import command_of_users
+from pogosim.batch.runs.attempts import command_of_users
 from pogosim.confidence import mean_over_runs
 from pogosim.pogoptim import main
 from pogosim.utils import load_dataframe

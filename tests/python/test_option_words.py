@@ -10,8 +10,8 @@ import pytest
 import yaml
 from batches import batch
 from pogosim.arenas import main as draw_arena
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.option_words import (
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.option_words import (
     DOMAIN_WORDS,
     HIERARCHICAL_OPTIONS,
     RANGE_WORDS,

@@ -1,7 +1,8 @@
-"""Dependencies between the rooms of src/ go one way, as src/CMakeLists.txt declares them."""
+"""Dependencies between rooms go one way: in src/ as src/CMakeLists.txt says, in batches as this file does."""
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 from collections import defaultdict
@@ -23,6 +24,15 @@ PRIVATE_LIBRARIES = {
     "imgui": {"render", "view"},
     "png.h": {"render"},
     "SDL": {"view"},
+}
+
+BATCH = SOURCE.parent / "python" / "pogosim" / "batch"
+# Rooms of pogosim.batch, each with those it may look into; the modules of the package itself may look into all.
+BATCH_ROOMS = {
+    "configurations": {"errors"},
+    "runs": {"configurations", "errors"},
+    "workers": {"runs", "errors"},
+    "result_files": {"configurations", "runs", "errors"},
 }
 
 
@@ -73,6 +83,18 @@ def includes(room: str, pattern: str) -> set[tuple[str, str]]:
         for file in files
         for found in re.findall(pattern, file.read_text(encoding="utf-8"), re.MULTILINE)
     }
+
+
+def imported(file: Path) -> set[str]:
+    """What a Python file imports, modules with the names that are taken from them."""
+    names = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}: relative import"
+            names |= {f"{node.module}.{name.name}" for name in node.names}
+        elif isinstance(node, ast.Import):
+            names |= {name.name for name in node.names}
+    return names
 
 
 def test_every_folder_is_a_declared_room() -> None:
@@ -131,3 +153,27 @@ def test_no_room_needs_what_a_room_above_it_defines() -> None:
         if name in home and home[name] not in rooms_below(room) | {room}
     ]
     assert wrong == []
+
+
+def test_every_folder_of_batches_is_a_room() -> None:
+    assert {file.parent.name for file in BATCH.glob("*/__init__.py")} == set(BATCH_ROOMS)
+
+
+@pytest.mark.parametrize("room", BATCH_ROOMS)
+def test_room_of_batches_imports_exactly_what_it_declares(room: str) -> None:
+    """Imports within functions count, too."""
+    used = defaultdict(set)
+    for file in (BATCH / room).glob("*.py"):
+        for name in imported(file):
+            if name.startswith("pogosim.batch."):
+                used[name.split(".")[2]].add(file.name)
+    del used[room]
+    assert {other: used[other] for other in used.keys() - BATCH_ROOMS[room]} == {}
+    assert BATCH_ROOMS[room] - used.keys() == set()
+
+
+def test_arrows_between_rooms_of_batches_make_no_circle() -> None:
+    above: set[str] = {"errors"}
+    for room, others in BATCH_ROOMS.items():  # in an order in which each looks into earlier ones alone
+        assert others <= above
+        above.add(room)

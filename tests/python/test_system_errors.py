@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 import pytest
 from batches import batch, write_options
-from pogosim.batch import attempts
+from pogosim.batch.runs import attempts
 from pogosim.command.main import main
 from pogosim.optimize import history
 from pogosim.outputs import partial_output

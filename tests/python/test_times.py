@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from pogosim.batch.parts import Part
-from pogosim.batch.results import write_results
-from pogosim.batch.run_data import read_run
+from pogosim.batch.result_files.parts import Part
+from pogosim.batch.result_files.results import write_results
+from pogosim.batch.runs.run_data import read_run
 from pogosim.film.making import frame_times
 from pogosim.picture.swarm import read_recording
 from pogosim.times import as_float64

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 from batches import batch
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration, dump_configuration
-from pogosim.batch.names import file_name, new_columns
-from pogosim.batch.option_words import CombinationsError
-from pogosim.batch.options import expand_batch_options
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration, dump_configuration
+from pogosim.batch.configurations.names import file_name, new_columns
+from pogosim.batch.configurations.option_words import CombinationsError
+from pogosim.batch.configurations.options import expand_batch_options
 from pogosim.utils import load_dataframe
 from pogosim.yaml_1_2 import dump_yaml, parse_yaml, plain
 from running import compile_text, run_command

@@ -23,7 +23,7 @@ from pogosim.analysis.arena import Arena, Floats
 from pogosim.analysis.progress import rows_read
 from pogosim.analysis.robot_sizes import Sizes, sizes_of
 from pogosim.arguments import Arguments
-from pogosim.batch.paths import get_by_dotted_path
+from pogosim.batch.configurations.paths import get_by_dotted_path
 from pogosim.errors import AnalysisError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, with_categories

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pogosim
+from pogosim.batch.configurations.seeds import listed_seeds
 from pogosim.batch.errors import BatchError, at_least, given
-from pogosim.batch.manifests import CAMPAIGN, CAMPAIGN_VERSION, check_campaign, write_json
+from pogosim.batch.result_files.manifests import CAMPAIGN, CAMPAIGN_VERSION, check_campaign, write_json
 from pogosim.batch.runner import PogobotBatchRunner
-from pogosim.batch.seeds import listed_seeds
 from pogosim.outputs import PathLike
 
 
@@ -95,7 +95,7 @@ def run_local_campaign(
         backend: "multiprocessing", "sequential" or "dask".
         jobs: Runs at the same time; 0: one per processor.
         retries: How many times a failed run is repeated.
-        retry_new_seed: With another seed, see `pogosim.batch.seeds.replacements`; False: with the same one.
+        retry_new_seed: With another seed, see `pogosim.batch.configurations.seeds`; False: with the same one.
         keep_temp: Keep the folders of single runs, each with its `pogobatch_task.json`.
         isolated: Each run is a process of its own; else, one process may do many, one after the other.
         progress: Say how many runs are done, also where there is no terminal.

@@ -20,8 +20,8 @@ from pogosim.batch.run_options import (
     give_program,
     runner_of,
 )
+from pogosim.batch.runs.temporary import TemporaryFolder
 from pogosim.batch.subcommands import SUBCOMMANDS, overview, subparser, tell_outputs, unknown_subcommand
-from pogosim.batch.temporary import TemporaryFolder
 from pogosim.errors import ToolError
 from pogosim.lines import say, say_error
 

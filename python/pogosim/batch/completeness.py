@@ -12,15 +12,15 @@ from functools import cached_property
 from pathlib import PurePath
 from typing import Any
 
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.names import file_name
+from pogosim.batch.configurations.option_words import CHOICES, chosen_in, shown
 from pogosim.batch.errors import BatchError
-from pogosim.batch.identity import config_hash
-from pogosim.batch.manifests import for_json
-from pogosim.batch.names import file_name
-from pogosim.batch.option_words import CHOICES, chosen_in, shown
-from pogosim.batch.result_metadata import Earlier, configuration_in
-from pogosim.batch.run_counts import RunCounts, gaps
-from pogosim.batch.run_files import ALL_OUTPUTS, is_file_beside
+from pogosim.batch.result_files.manifests import for_json
+from pogosim.batch.result_files.result_metadata import Earlier, configuration_in
+from pogosim.batch.result_files.run_counts import RunCounts, gaps
+from pogosim.batch.runs.identity import config_hash
+from pogosim.batch.runs.run_files import ALL_OUTPUTS, is_file_beside
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.lines import counted
 from pogosim.varied import NO_PARAMETERS, differ, leaves, varied_parameters

@@ -12,17 +12,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.option_words import chosen_in
 from pogosim.batch.errors import BatchError, cannot
-from pogosim.batch.manifests import TASK, batch_entries, task_entries, write_json
-from pogosim.batch.option_words import chosen_in
-from pogosim.batch.parts import PLAIN, Format
-from pogosim.batch.places import in_the_users_file
 from pogosim.batch.reports import Failure, Progress, Replaced, report_warnings
-from pogosim.batch.results import check_columns
-from pogosim.batch.run import Outcome, Task
-from pogosim.batch.run_data import RunFile, shared
-from pogosim.batch.tasks import Combination
+from pogosim.batch.result_files.manifests import TASK, batch_entries, task_entries, write_json
+from pogosim.batch.result_files.parts import PLAIN, Format
+from pogosim.batch.result_files.results import check_columns
+from pogosim.batch.runs.places import in_the_users_file
+from pogosim.batch.runs.run import Outcome, Task
+from pogosim.batch.runs.run_data import RunFile, shared
+from pogosim.batch.runs.tasks import Combination
 from pogosim.varied import varied_parameters
 
 log = logging.getLogger("pogobatch")

@@ -20,14 +20,14 @@ from pogosim.batch.completeness import (
     warn_of_others,
     warn_of_programs,
 )
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.names import is_linked_out, leads_out
 from pogosim.batch.errors import BatchError, given
-from pogosim.batch.manifests import TASK, read_manifest
-from pogosim.batch.names import is_linked_out, leads_out
-from pogosim.batch.parts import OF_CAMPAIGNS, Part
-from pogosim.batch.result_metadata import COMBINATIONS, Earlier, columns_as_text, manifest
-from pogosim.batch.results import check_columns, check_output, write_results
-from pogosim.batch.run_data import RunFile, opened
+from pogosim.batch.result_files.manifests import TASK, read_manifest
+from pogosim.batch.result_files.parts import OF_CAMPAIGNS, Part
+from pogosim.batch.result_files.result_metadata import COMBINATIONS, Earlier, columns_as_text, manifest
+from pogosim.batch.result_files.results import check_columns, check_output, write_results
+from pogosim.batch.runs.run_data import RunFile, opened
 from pogosim.batch.single_task import TaskArtifact
 from pogosim.lines import counted
 from pogosim.outputs import PathLike

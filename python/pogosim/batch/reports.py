@@ -14,8 +14,8 @@ from typing import Any, NoReturn
 from tqdm import tqdm
 from tqdm.contrib.logging import logging_redirect_tqdm
 
-from pogosim.batch.option_words import shown
-from pogosim.batch.run import Outcome, Task
+from pogosim.batch.configurations.option_words import shown
+from pogosim.batch.runs.run import Outcome, Task
 from pogosim.lines import counted, printable
 
 log = logging.getLogger("pogobatch")

@@ -12,23 +12,23 @@ from typing import Any
 
 import pandas as pd
 
-from pogosim.batch.backends import Do, Workers
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.names import ambiguous, new_columns, value_at
 from pogosim.batch.execution import Execution
-from pogosim.batch.identity import world_digest
-from pogosim.batch.joining import part_of
-from pogosim.batch.names import ambiguous, new_columns, value_at
-from pogosim.batch.open_batch import OpenBatch
-from pogosim.batch.parts import WITH_SEEDS
 from pogosim.batch.reports import report_warnings
-from pogosim.batch.results import write_results
-from pogosim.batch.run import Outcome
-from pogosim.batch.run_data import RunFile
-from pogosim.batch.run_log import with_last_line
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder
+from pogosim.batch.result_files.joining import part_of
+from pogosim.batch.result_files.parts import WITH_SEEDS
+from pogosim.batch.result_files.results import write_results
+from pogosim.batch.runs.identity import world_digest
+from pogosim.batch.runs.open_batch import OpenBatch
+from pogosim.batch.runs.run import Outcome
+from pogosim.batch.runs.run_data import RunFile
+from pogosim.batch.runs.run_log import with_last_line
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.tasks import Combination
+from pogosim.batch.runs.temporary import TemporaryFolder
+from pogosim.batch.workers.backends import Do, Workers
 from pogosim.utils import load_dataframe
 
 ARENA = "arena_file"

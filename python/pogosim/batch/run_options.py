@@ -9,10 +9,10 @@ import sys
 from typing import TYPE_CHECKING, NoReturn
 
 from pogosim.arguments import is_text
+from pogosim.batch.configurations.seeds import seeds_between
 from pogosim.batch.errors import BatchError, NoProgramError, at_least, cannot
-from pogosim.batch.jobqueue_options import add_jobqueue_options, asked_jobs
-from pogosim.batch.seeds import seeds_between
-from pogosim.batch.slurm_options import add_slurm_options
+from pogosim.batch.workers.jobqueue_options import add_jobqueue_options, asked_jobs
+from pogosim.batch.workers.slurm_options import add_slurm_options
 from pogosim.lines import say_error
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def give_program(arguments: argparse.Namespace) -> None:
     """
     if arguments.simulator_binary is not None:
         return
-    from pogosim.batch.configuration import Configuration
+    from pogosim.batch.configurations.configuration import Configuration
     from pogosim.extensions import MODELS_VARIABLE, models_path
     from pogosim.installation import find_installation
 

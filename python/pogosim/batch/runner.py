@@ -10,26 +10,26 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.backends import Workers
-from pogosim.batch.combinations import combinations_of
-from pogosim.batch.configuration import Configuration, dump_configuration
+from pogosim.batch.configurations.combinations import combinations_of
+from pogosim.batch.configurations.configuration import Configuration, dump_configuration
+from pogosim.batch.configurations.names import COLUMNS, ambiguous, file_name, is_linked_out, new_columns
+from pogosim.batch.configurations.seeds import listed_seeds, range_text
+from pogosim.batch.configurations.selection import check_columns_exist, indistinguishable, with_output
 from pogosim.batch.errors import BatchError, at_least, cannot, given, one_line, tell
 from pogosim.batch.execution import Execution
-from pogosim.batch.identity import seed_of
-from pogosim.batch.jobqueue_options import QueuedJobs
-from pogosim.batch.joining import join, remove_stale, removing_stale
-from pogosim.batch.names import COLUMNS, ambiguous, file_name, is_linked_out, new_columns
-from pogosim.batch.open_batch import OpenBatch
-from pogosim.batch.parts import OF_CAMPAIGNS, PLAIN
 from pogosim.batch.reports import Failure, Replaced, report_failures, report_replaced
-from pogosim.batch.results import check_output
-from pogosim.batch.run_policy import QUIET, RunPolicy
-from pogosim.batch.seeds import listed_seeds, range_text
-from pogosim.batch.selection import check_columns_exist, indistinguishable, with_output
-from pogosim.batch.slurm_options import SlurmJobs
-from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder
-from pogosim.batch.unfinished_runs import tell_of_states
+from pogosim.batch.result_files.joining import join, remove_stale, removing_stale
+from pogosim.batch.result_files.parts import OF_CAMPAIGNS, PLAIN
+from pogosim.batch.result_files.results import check_output
+from pogosim.batch.runs.identity import seed_of
+from pogosim.batch.runs.open_batch import OpenBatch
+from pogosim.batch.runs.run_policy import QUIET, RunPolicy
+from pogosim.batch.runs.tasks import Combination
+from pogosim.batch.runs.temporary import TemporaryFolder
+from pogosim.batch.runs.unfinished_runs import tell_of_states
+from pogosim.batch.workers.backends import Workers
+from pogosim.batch.workers.jobqueue_options import QueuedJobs
+from pogosim.batch.workers.slurm_options import SlurmJobs
 from pogosim.run_columns import RETRY
 
 MAX_RUNS = 10_000_000  # in memory, about 1 kB each
@@ -69,7 +69,7 @@ class PogobotBatchRunner:
         jobs: Jobs of SLURM, or of another batch system, that do the runs.
         seeds: Seed of each run; None: as `seed_from` says; CONFIGURED: those of `_rundr` in the configuration, or else
             one run.
-        retry_new_seed: Repeat a failed run with another seed, see `pogosim.batch.seeds.replacements`; otherwise, with
+        retry_new_seed: Repeat a failed run with another seed, see `pogosim.batch.configurations.seeds`; otherwise, with
             the same one.
         with_seeds: Add the columns `seed` and `retry_attempt` to the results, and a manifest to their metadata.
         progress: Say how many runs are done also where there is no terminal.

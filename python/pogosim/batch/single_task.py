@@ -9,26 +9,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.attempts import attempt_from_state, attempt_in
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.names import file_name, new_columns
+from pogosim.batch.configurations.option_words import CHOICES, shown
+from pogosim.batch.configurations.seeds import listed_seeds, seeds_between
 from pogosim.batch.errors import BatchError, at_least, cannot, given
-from pogosim.batch.manifests import MOST, TASK, read_manifest, task_entries, write_json
-from pogosim.batch.names import file_name, new_columns
-from pogosim.batch.open_batch import OpenBatch
-from pogosim.batch.option_words import CHOICES, shown
-from pogosim.batch.parts import OF_CAMPAIGNS, WITH_SEEDS
-from pogosim.batch.places import in_the_users_file
-from pogosim.batch.result_metadata import columns_as_text
-from pogosim.batch.results import check_columns
-from pogosim.batch.run import FRAMES, Outcome, Task
-from pogosim.batch.run_data import RunFile, read_run, shared
-from pogosim.batch.run_log import EFFECTIVE, with_last_line
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.seeds import listed_seeds, seeds_between
-from pogosim.batch.simulators import simulators
-from pogosim.batch.tasks import Combination
-from pogosim.batch.temporary import TemporaryFolder, batch_name
-from pogosim.batch.unfinished_runs import UnfinishedRun, held
+from pogosim.batch.result_files.manifests import MOST, TASK, read_manifest, task_entries, write_json
+from pogosim.batch.result_files.parts import OF_CAMPAIGNS, WITH_SEEDS
+from pogosim.batch.result_files.result_metadata import columns_as_text
+from pogosim.batch.result_files.results import check_columns
+from pogosim.batch.runs.attempts import attempt_from_state, attempt_in
+from pogosim.batch.runs.open_batch import OpenBatch
+from pogosim.batch.runs.places import in_the_users_file
+from pogosim.batch.runs.run import FRAMES, Outcome, Task
+from pogosim.batch.runs.run_data import RunFile, read_run, shared
+from pogosim.batch.runs.run_log import EFFECTIVE, with_last_line
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.simulators import simulators
+from pogosim.batch.runs.tasks import Combination
+from pogosim.batch.runs.temporary import TemporaryFolder, batch_name
+from pogosim.batch.runs.unfinished_runs import UnfinishedRun, held
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RETRY, RUN, SEED
 from pogosim.table_metadata import parse_configuration

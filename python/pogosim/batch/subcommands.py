@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pogosim.batch.ending import Report, RunsFailedError
 from pogosim.batch.errors import BatchError, tell
-from pogosim.batch.identity import find_program
 from pogosim.batch.run_options import (
     PROGRAM_HELP,
     Parser,
@@ -22,6 +21,7 @@ from pogosim.batch.run_options import (
     give_program,
     runner_of,
 )
+from pogosim.batch.runs.identity import find_program
 from pogosim.lines import counted, say
 from pogosim.nearest_name import listed, unknown
 
@@ -119,8 +119,8 @@ class PlannedRuns:
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         """Yield what JSON says of each."""
-        from pogosim.batch.manifests import for_json
-        from pogosim.batch.option_words import chosen_in
+        from pogosim.batch.configurations.option_words import chosen_in
+        from pogosim.batch.result_files.manifests import for_json
 
         for number, some in itertools.groupby(self.which, lambda task: task // self.runner.runs):
             entries, output = self.selected[number]

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from pogosim.batch.backends import Workers
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.rows import Runs
-from pogosim.batch.run_policy import RunPolicy
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.workers.backends import Workers
 from pogosim.calibration.fit import Fit, Matcher, Settings, fit, median_profile, tracker_errors
 from pogosim.calibration.parameters import BIAS, chosen, start_bias, start_values
 from pogosim.calibration.reading import read_track_table

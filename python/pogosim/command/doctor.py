@@ -174,7 +174,7 @@ def check_films(found: Installation) -> Finding:  # noqa: ARG001
 
 def check_batches(found: Installation) -> Finding:  # noqa: ARG001
     """Import what batches need, and count processors."""
-    processors = importlib.import_module("pogosim.batch.backends").processors
+    processors = importlib.import_module("pogosim.batch.workers.backends").processors
     return Finding("Batches", True, f"{processors()} runs at the same time, one per processor")
 
 

@@ -224,7 +224,7 @@ def check_nothing_is_lost(name: str) -> None:
 
 def robots_of(configuration: str) -> list[tuple[str, int]]:
     """Return category and id of all robots and other objects with a program, as the simulator numbers them."""
-    from pogosim.batch.configuration import Configuration
+    from pogosim.batch.configurations.configuration import Configuration
     from pogosim.object_categories import UnknownCategoriesError, ids_of
     from pogosim.object_facts import TYPES, entries_in, entry_of, type_of
     from pogosim.scene import bodies_of, read_periodic

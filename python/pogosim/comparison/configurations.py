@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.manifests import TASK
+from pogosim.batch.result_files.manifests import TASK
 from pogosim.row_batches import row_batches
 from pogosim.run_report.facts import is_batch, seeds_of
 from pogosim.several_files import configuration_of, is_pattern
@@ -79,7 +79,7 @@ def source_of(name: str) -> Source:
 def program_hash(data: Path) -> str:
     """Return the hash of the program of a run, of the manifest that a batch has kept in its folder; empty: unknown.
 
-    The data file is in the folder below, see `pogosim.batch.manifests`.
+    The data file is in the folder below, see `pogosim.batch.result_files.manifests`.
     """
     try:
         entries = json.loads((data.resolve().parent.parent / TASK).read_text(encoding="utf-8"))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.errors import BatchError
 from pogosim.defaults import AREA_MM2
 from pogosim.geometry.arena_file import ArenaError, Outline, read_arena, scaled

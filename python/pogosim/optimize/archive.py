@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from pogosim.batch.configuration import Configuration
-from pogosim.batch.manifests import write_whole
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.result_files.manifests import write_whole
 from pogosim.optimize.optimizers.quality_diversity import MapElites
 from pogosim.optimize.plots import draw_archive
 from pogosim.optimize.results import (

@@ -10,11 +10,10 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import pogosim
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
+from pogosim.batch.configurations.names import NamesError
 from pogosim.batch.ending import catch_signals, start_logging
 from pogosim.batch.errors import reason
-from pogosim.batch.jobqueue_options import add_jobqueue_options
-from pogosim.batch.names import NamesError
 from pogosim.batch.run_options import (
     INTERRUPTED,
     ISOLATED,
@@ -25,7 +24,8 @@ from pogosim.batch.run_options import (
     check_names,
     give_program,
 )
-from pogosim.batch.slurm_options import add_slurm_options
+from pogosim.batch.workers.jobqueue_options import add_jobqueue_options
+from pogosim.batch.workers.slurm_options import add_slurm_options
 from pogosim.command.parser import Parser, warn, warnings_told
 from pogosim.errors import AmbiguousStepsWarning, ToolError
 from pogosim.optimize.optimizers.table import OPTIMIZERS, check_optimizer, optimizer_for

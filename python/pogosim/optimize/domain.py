@@ -7,7 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pogosim.batch.option_words import DEFAULT, DOMAIN, DOMAIN_WORDS, LIST, OptionsError, refuse_unknown, shown
+from pogosim.batch.configurations.option_words import (
+    DEFAULT,
+    DOMAIN,
+    DOMAIN_WORDS,
+    LIST,
+    OptionsError,
+    refuse_unknown,
+    shown,
+)
 from pogosim.yaml_1_2 import plain
 
 TYPES = ("int", "float", "categorical")

@@ -8,14 +8,14 @@ import logging
 import time
 from pathlib import Path
 
-from pogosim.batch.backends import Workers
-from pogosim.batch.configuration import Configuration
-from pogosim.batch.jobqueue_options import asked_jobs
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.reports import Progress
 from pogosim.batch.rows import Runs
-from pogosim.batch.run_files import found_beside
-from pogosim.batch.run_policy import RunPolicy
-from pogosim.batch.tasks import check_logs_data
+from pogosim.batch.runs.run_files import found_beside
+from pogosim.batch.runs.run_policy import RunPolicy
+from pogosim.batch.runs.tasks import check_logs_data
+from pogosim.batch.workers.backends import Workers
+from pogosim.batch.workers.jobqueue_options import asked_jobs
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Journal
 from pogosim.optimize.objective import Objective, load_objective

@@ -19,7 +19,7 @@ import pandas as pd
 
 from pogosim.analysis.displacement import compute_msd_per_agent
 from pogosim.batch.errors import one_line
-from pogosim.batch.identity import file_digest
+from pogosim.batch.runs.identity import file_digest
 from pogosim.errors import OptimizeError
 from pogosim.optimize.settings import OBJECTIVE_NAMES
 

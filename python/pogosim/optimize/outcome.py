@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from pogosim.batch.attempts import command_of_users
-from pogosim.batch.configuration import Configuration
+from pogosim.batch.configurations.configuration import Configuration
 from pogosim.batch.errors import cannot
 from pogosim.batch.rows import Finished
+from pogosim.batch.runs.attempts import command_of_users
 from pogosim.confidence import mean_over_runs
 from pogosim.optimize.archive import write_archive
 from pogosim.optimize.history import Evaluation

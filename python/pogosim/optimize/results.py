@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from pogosim.batch.combinations import overlay
-from pogosim.batch.configuration import dump_configuration
+from pogosim.batch.configurations.combinations import overlay
+from pogosim.batch.configurations.configuration import dump_configuration
+from pogosim.batch.configurations.names import COLUMNS, FORMAT
 from pogosim.batch.errors import cannot
-from pogosim.batch.manifests import write_whole
-from pogosim.batch.names import COLUMNS, FORMAT
-from pogosim.batch.run_files import with_files_beside
+from pogosim.batch.result_files.manifests import write_whole
+from pogosim.batch.runs.run_files import with_files_beside
 from pogosim.errors import OptimizeError
 from pogosim.optimize.history import JOURNAL, Evaluation
 from pogosim.optimize.settings import SECTION

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from pogosim.batch.option_words import shown
+from pogosim.batch.configurations.option_words import shown
 from pogosim.errors import OptimizeError
 from pogosim.nearest_name import advice, nearest_name
 from pogosim.yaml_1_2 import plain
@@ -50,7 +50,7 @@ class Settings:
         qd_mut_pb: Probability that a mutation changes a variable.
         qd_eta: Crowding degree of polynomial mutation.
         retries: How many times a failed run is repeated.
-        backend: See `pogosim.batch.backends.Workers`.
+        backend: See `pogosim.batch.workers.backends.Workers`.
         output_dir: Folder of the results.
         temp_base: Folder for files of single runs.
         keep_temp: Keep them.

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.batch.combinations import alternatives_of, overlay
-from pogosim.batch.option_words import (
+from pogosim.batch.configurations.combinations import alternatives_of, overlay
+from pogosim.batch.configurations.option_words import (
     DOMAIN,
     HIERARCHICAL_OPTIONS,
     NAME,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pogosim.batch.manifests import TASK
-from pogosim.batch.run_log import LOG, warnings_in_log
+from pogosim.batch.result_files.manifests import TASK
+from pogosim.batch.runs.run_log import LOG, warnings_in_log
 from pogosim.lines import counted
 
 MOST_WARNINGS = 50  # that a page shows

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from pogosim.batch.named_files import NamedFile, any_entries_in, may_be_a_name, named_files
-from pogosim.batch.run_files import OUTPUTS, value_at
+from pogosim.batch.runs.named_files import NamedFile, any_entries_in, may_be_a_name, named_files
+from pogosim.batch.runs.run_files import OUTPUTS, value_at
 from pogosim.extensions import MODELS_VARIABLE
 from pogosim.firmware.profile.sources import folders_of
 from pogosim.installation import Installation

@@ -1,0 +1,1 @@
+"""What does runs: processes of this machine, Dask, and jobs of batch systems."""
