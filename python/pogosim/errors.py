@@ -23,6 +23,10 @@ class AmbiguousStepsWarning(RuntimeWarning):
     """Rows are so far apart in time that robots may have gone another way than the shortest."""
 
 
+class DamagedFileError(ToolError, ValueError):
+    """A data file is damaged, or none; says which, what is wrong, and what to do."""
+
+
 class CalibrationError(ToolError):
     """Robots cannot be calibrated so; says what, where, and what to do."""
 

@@ -37,7 +37,9 @@ def read_other(path: Path) -> pa.Table | None:
         import pyarrow.parquet as pq  # takes a while
 
         with path.open("rb") as file:
-            return pq.read_table(file)
+            table = pq.read_table(file)
+        table.validate(full=True)
+        return table
     return read_csv(path) if kind == CSV else None
 
 

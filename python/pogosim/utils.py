@@ -18,8 +18,10 @@ import pyarrow
 from pyarrow import feather
 
 from pogosim.arguments import Arguments
+from pogosim.damaged_files import damage_told
+from pogosim.errors import DamagedFileError
 from pogosim.outputs import PathLike
-from pogosim.recover import DAMAGED, RecoverError, is_complete, read_unfinished, reraise_system_error
+from pogosim.recover import RecoverError, Unfinished, is_complete, read_unfinished
 from pogosim.several_files import files_that_fit, is_pattern, join_files
 from pogosim.table_formats import CSV, format_in
 from pogosim.table_metadata import NoMetadataWarning, are_of_runs, metadata_of, parse_facts, shared
@@ -65,7 +67,7 @@ def load_dataframe(path: PathLike | Sequence[PathLike]) -> tuple[pd.DataFrame, d
         OSError: A file cannot be read.
         ValueError: What was given is no path, or an empty list. An earlier part of a run that went on from a saved
             state is not among several files. A file is damaged, or neither a complete Feather file
-            nor an unfinished one of the simulator.
+            nor an unfinished one of the simulator (`pogosim.errors.DamagedFileError`).
     """
     if isinstance(path, Iterable) and not isinstance(path, (str, bytes, os.PathLike)):
         files = [given.path(f"path[{number}]", file) for number, file in enumerate(path)]
@@ -86,10 +88,8 @@ def attributes(metadata: dict[str, Any]) -> dict[Hashable | None, Any]:
 def load_file(path: Path, warns: bool = True) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Read one data file: what `load_dataframe` does with it, and without its warning if that is not wanted."""
     table = read_table(path, warns)
-    try:
+    with damage_told(path):
         rows = table.to_pandas()
-    except DAMAGED as error:
-        raise ValueError(f"{path} is damaged: its rows cannot be read: {error}") from error
     metadata = parsed_metadata(table.schema)
     is_told_of = format_in(path) == CSV  # when it was read
     if warns and not is_told_of and not are_of_runs(metadata_of(table.schema)):
@@ -125,40 +125,46 @@ def parsed_metadata(schema: pyarrow.Schema) -> dict[str, Any]:
 
 
 def read_table(path: Path, warns: bool = True) -> pyarrow.Table:
-    """Read a data file as load_dataframe does, keeping the types and metadata of the file."""
+    """Read a data file as load_dataframe does, keeping the types and metadata of the file.
+
+    Raises:
+        OSError: It cannot be read.
+        DamagedFileError: It is damaged, or no data file.
+        ValueError: It is no file.
+    """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise ValueError(f"{path} is not a file, but a pipe, a socket or a device; expected a data file")
+    with damage_told(path):
+        if (other := read_other(path)) is not None:
+            return other
     try:
-        other = read_other(path)
-    except (pyarrow.ArrowException, ValueError) as error:
-        raise ValueError(f"{path} is damaged, or no data file: {error}") from error
-    if other is not None:
-        return other
-    with path.open("rb") as file:
-        try:
-            return feather.read_table(file, memory_map=False)
-        except DAMAGED as error:
-            reraise_system_error(error)
-            reason = error
-    try:
-        unfinished = read_unfinished(path)
-    except RecoverError:
-        raise ValueError(f"{path} is not a complete Feather file: {reason}") from reason
-    hint = f"to recover it: pogosim-recover {path}"
-    if is_complete(path):
-        raise ValueError(
-            f"{path} is damaged: {reason}; to save its first rows ({unfinished.up_to}): "
-            f"pogosim-recover {path} -o another_file.feather"
-        ) from reason
-    if not unfinished.says_so:
-        raise ValueError(f"{path} is not a complete Feather file: it is truncated; {hint}") from reason
+        with damage_told(path), path.open("rb") as file:
+            table = feather.read_table(file, memory_map=False)
+            table.validate(full=True)  # or damaged places of texts lead out of memory
+            return table
+    except DamagedFileError:
+        unfinished = being_written(path)
+        if unfinished is None:
+            raise
     if warns:
         warnings.warn(
-            f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; {hint}",
+            f"{path} is incomplete: its run is still going on, or was killed. Read {unfinished.up_to}; "
+            f"to recover it: pogosim-recover {path}",
             RuntimeWarning,
             stacklevel=4,
         )
     return unfinished.table
+
+
+def being_written(path: Path) -> Unfinished | None:
+    """Return the rows of a file whose run has not ended, or was killed; None for others."""
+    if is_complete(path):
+        return None
+    try:
+        unfinished = read_unfinished(path)
+    except RecoverError:
+        return None
+    return unfinished if unfinished.says_so else None
 
 
 def polygons_of(polygons: Any) -> list[npt.NDArray[np.float64]]:

@@ -13,7 +13,8 @@ import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 import pytest
-from pogosim.analysis import snapshots, stored_runs
+from pogosim import row_batches
+from pogosim.analysis import snapshots
 from pogosim.analysis.network import mean_speed_mm_s
 from pogosim.analysis.snapshots import times_of
 from pogosim.analysis.stored_runs import ReadAsAWhole, StoredRun, runs_of
@@ -96,7 +97,7 @@ FILES: dict[str, Callable[[], tuple[pd.DataFrame, dict[str, Any]]]] = {
 @pytest.fixture
 def file(kind_of_file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A file whose times go across the borders of its batches, of pieces and of blocks."""
-    monkeypatch.setattr(stored_runs, "PIECE", 25)
+    monkeypatch.setattr(row_batches, "PIECE", 25)
     monkeypatch.setattr(snapshots, "MAX_POINTS", 31)
     return in_batches(write_rows(tmp_path / "rows.feather", *FILES[kind_of_file]()))
 
@@ -163,7 +164,7 @@ def test_analyses_write_the_same_bytes_wherever_the_rows_are(
 
 
 def test_column_of_neighbours_is_read_with_the_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stored_runs, "PIECE", 10)
+    monkeypatch.setattr(row_batches, "PIECE", 10)
     rows = swarm(20, 4).assign(neighbors_list=[f"{(place + 1) % 4}" for place in range(80)])
     path = in_batches(write_rows(tmp_path / "rows.feather", rows, metadata_of()))
     (run,) = runs_of(path)

@@ -16,7 +16,6 @@ Then `StoredRun.blocks` reads the pieces of a run one after the other; rows of a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -25,7 +24,6 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
-from pyarrow import ipc
 
 from pogosim.analysis.progress import rows_read
 from pogosim.analysis.trajectories import (
@@ -35,6 +33,7 @@ from pogosim.analysis.trajectories import (
     arena_and_sizes,
     category_names,
     check_cells,
+    headings_in,
     label_columns,
     need_numbers,
     of_categories,
@@ -43,17 +42,14 @@ from pogosim.analysis.trajectories import (
     with_objects,
 )
 from pogosim.far_away import is_far, warn_of_far
-from pogosim.recover import DAMAGED
+from pogosim.row_batches import RowFile
 from pogosim.run_columns import may_be_one_run
-from pogosim.table_formats import CSV, PARQUET, format_in
+from pogosim.table_formats import CSV, format_in
 from pogosim.table_metadata import are_of_runs, metadata_of
 from pogosim.utils import parsed_metadata, positions_within, scaled, warn_of_no_metadata
 from pogosim.varied import OBJECTS
 
 Key = tuple[Any, ...]
-
-# Rows that are looked at at once.
-PIECE = 65536
 
 POSITION = ("time", "x", "y")
 
@@ -65,80 +61,17 @@ class ReadAsAWhole(Exception):  # noqa: N818 -- it is no error
 # ---- the file ----
 
 
-class Rows:
-    """The rows of a Feather or Parquet file, piece by piece."""
+def row_file(path: Path) -> RowFile:
+    """Open a file whose rows can stay in it.
 
-    def __init__(self, path: Path) -> None:
-        """Open a complete file.
-
-        Raises:
-            ReadAsAWhole: It is none.
-            OSError: It cannot be read.
-        """
-        if not path.is_file():  # a pipe would wait
-            raise ReadAsAWhole
-        self.path = path
-        self.kind = format_in(path)
-        try:
-            if self.kind == CSV:
-                raise ReadAsAWhole
-            if self.kind == PARQUET:
-                import pyarrow.parquet as pq  # takes a while
-
-                info = pq.ParquetFile(path)
-                self.schema = info.schema_arrow
-                sizes = [info.metadata.row_group(number).num_rows for number in range(info.num_row_groups)]
-            else:
-                with pa.OSFile(str(path)) as file:
-                    reader = ipc.open_file(file, options=ipc.IpcReadOptions(included_fields=[0]))
-                    self.schema = ipc.open_file(file).schema
-                    sizes = [reader.get_batch(number).num_rows for number in range(reader.num_record_batches)]
-        except (*DAMAGED, KeyError, IndexError) as error:
-            raise ReadAsAWhole from error
-        # A piece: its batch, its first row there, and its number of rows.
-        self.pieces = [
-            (batch, begin, min(PIECE, size - begin))
-            for batch, size in enumerate(sizes)
-            for begin in range(0, size, PIECE)
-        ]
-        self.count = sum(sizes)
-
-    def read(
-        self, columns: Sequence[str], pieces: Iterable[int] | None = None, tells: bool = True
-    ) -> Iterator[tuple[int, pa.Table]]:
-        """Yield pieces with some of their columns, and their numbers; all pieces by default. Tells of rows read.
-
-        Raises:
-            ReadAsAWhole: The file is damaged.
-        """
-        try:
-            with self.opened(columns) as batch_of:
-                last, rows = -1, None
-                for number in range(len(self.pieces)) if pieces is None else pieces:
-                    batch, begin, length = self.pieces[number]
-                    if batch != last:
-                        rows = None  # before there are two
-                        last, rows = batch, batch_of(batch)
-                    assert rows is not None
-                    yield number, rows.slice(begin, length)
-                    if tells:
-                        rows_read(length)
-        except (pa.ArrowException, UnicodeDecodeError) as error:
-            raise ReadAsAWhole from error
-
-    @contextmanager
-    def opened(self, columns: Sequence[str]) -> Iterator[Callable[[int], pa.Table]]:
-        """Open the file; gives a function that reads a batch with these columns."""
-        if self.kind == PARQUET:
-            import pyarrow.parquet as pq  # takes a while
-
-            info = pq.ParquetFile(self.path)
-            yield lambda number: info.read_row_group(number, columns=list(columns))
-            return
-        places = [self.schema.get_field_index(name) for name in columns]
-        with pa.OSFile(str(self.path)) as file:
-            reader = ipc.open_file(file, options=ipc.IpcReadOptions(included_fields=places))
-            yield lambda number: pa.Table.from_batches([reader.get_batch(number)])
+    Raises:
+        ReadAsAWhole: It is none.
+        OSError: It cannot be read.
+        DamagedFileError: It is damaged, or not complete.
+    """
+    if not path.is_file() or format_in(path) == CSV:  # a pipe would wait
+        raise ReadAsAWhole
+    return RowFile(path)
 
 
 # ---- which rows ----
@@ -159,7 +92,7 @@ class Own(NamedTuple):
 class Selection:
     """Which rows of a file are whose."""
 
-    rows: Rows
+    rows: RowFile
     columns: tuple[str, ...]  # those that say it
     labels: tuple[str, ...]  # those that tell runs apart; none: there is one
     categories: frozenset[str] | None  # of the robots; None: all
@@ -243,7 +176,7 @@ class StoredRun(Run):
         who = ["robot_id"] if is_simple else [name for name in self.selection.columns if name not in poses]
         wanted = list(dict.fromkeys([*poses, *who, *columns]))
         by_number = {one.piece: one for one in own}
-        for number, piece in rows.read(wanted, by_number, tells=False):
+        for number, piece in rows.read(wanted, by_number):
             part = by_number[number]
             piece = piece.slice(part.begin, part.end - part.begin)
             if is_simple:
@@ -276,7 +209,7 @@ class StoredRun(Run):
         position = np.full((*shape, 2), np.nan)
         position[at_time, robot] = rows[["x", "y"]].to_numpy(dtype=float)
         heading = np.full(shape, np.nan)
-        heading[at_time, robot] = rows["angle"].to_numpy(dtype=float)
+        heading[at_time, robot] = headings_in(rows)
         has_angle = "angle" in self.column_names
         return Trajectories(
             labels=self.labels,
@@ -349,8 +282,9 @@ def runs_of(path: Path, category: str | None = None, expect: Callable[[int], Non
         ReadAsAWhole: It is another file, or has something that only `trajectories_of` knows what to do with; it says
             all that is wrong with files.
         OSError: It cannot be read.
+        DamagedFileError: It is damaged, or not complete.
     """
-    file = Rows(path)
+    file = row_file(path)
     if expect is not None:
         expect(file.count)
     metadata = parsed_metadata(file.schema)
@@ -376,6 +310,7 @@ def runs_of(path: Path, category: str | None = None, expect: Callable[[int], Non
             labels = own if labels is None else pd.concat([labels, own]).drop_duplicates()
         for key, of_run in selection.runs(rows) if len(rows) else ():
             found.setdefault(key, Found()).add(number, of_run)
+        rows_read(piece.num_rows)
     if not found:
         raise ReadAsAWhole
     warn_of_far(far, robots)
@@ -414,7 +349,7 @@ def run_of(labels: dict[str, Any], found: Found, selection: Selection, metadata:
     )
 
 
-def selection_of(file: Rows, metadata: Mapping[str, Any], category: str | None) -> Selection:
+def selection_of(file: RowFile, metadata: Mapping[str, Any], category: str | None) -> Selection:
     """Return which rows are to be taken.
 
     Raises:
@@ -438,7 +373,7 @@ def selection_of(file: Rows, metadata: Mapping[str, Any], category: str | None) 
     of_objects = [name for name in (*OBJECT, "subpart_id") if name in names] or ["time"]
     every = Selection(file, tuple(columns), tuple(labels), None, metadata)
     there: set[str] = set()
-    for _, piece in file.read(of_objects, tells=False):
+    for _, piece in file.read(of_objects):
         there |= set(every.objects(piece)["robot_category"].astype(str).unique())
     chosen = category_names(there, metadata, category)
     categories = None if chosen is None or there <= chosen else frozenset(chosen)

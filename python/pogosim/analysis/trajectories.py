@@ -360,7 +360,7 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
     position[at_time, robot] = rows[["x", "y"]].to_numpy(dtype=float)
     heading = np.full(shape, np.nan)
     if "angle" in rows:
-        heading[at_time, robot] = rows["angle"].to_numpy(dtype=float)
+        heading[at_time, robot] = headings_in(rows)
     arena, sizes = arena_and_sizes(labels, category, metadata)
     return Trajectories(
         labels=labels,
@@ -374,6 +374,12 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         rows=rows,
         sizes=sizes,
     )
+
+
+def headings_in(rows: pd.DataFrame) -> Floats:
+    """Return the headings in rows, shape (rows,), rad; NaN where there is none, or one that no robot can have."""
+    heading = rows["angle"].to_numpy(dtype=float)
+    return np.where(np.isfinite(heading), heading, np.nan)
 
 
 def robot_numbers(rows: pd.DataFrame) -> npt.NDArray[np.int64]:

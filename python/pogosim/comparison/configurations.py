@@ -62,8 +62,7 @@ def source_of(name: str) -> Source:
         seeds = rows["seed"].dropna().unique().tolist() if "seed" in rows else []
         runs = int(rows["run"].nunique()) if "run" in rows else 1
         return Source(name, metadata, [int(seed) for seed in seeds], runs)
-    with row_batches(Path(name)) as opened:
-        found = metadata_of(opened.schema)
+    found = metadata_of(row_batches(Path(name)).schema)
     for key in CONFIGURATIONS:
         if key in found:
             found[key] = parse_configuration(found[key])

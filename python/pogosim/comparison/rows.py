@@ -68,25 +68,25 @@ def compare_rows(a: Path, b: Path, tolerance: float = 0.0) -> RowsCompared:
     Raises:
         OSError, ValueError: One cannot be read.
     """
-    with row_batches(a) as one, row_batches(b) as other:
-        pairs, only_in = common_columns(one.schema, other.schema)
-        types = {
-            name: (str(one.schema.field(i).type), str(other.schema.field(j).type))
-            for name, i, j in pairs
-            if not alike(one.schema.field(i).type, other.schema.field(j).type)
-        }
-        found = {name: ColumnDifference(name) for name, _, _ in pairs}
-        first: FirstDifference | None = None
-        readers = Reader(one.batches), Reader(other.batches)
-        for start, left, right in side_by_side(*readers):
-            unequal = {name: differing(left.column(i), right.column(j), tolerance) for name, i, j in pairs}
-            for name, i, j in pairs:
-                note(found[name], unequal[name], start, left.column(i), right.column(j))
-            rows = [int(np.argmax(own)) for own in unequal.values() if own.any()]
-            if first is None and rows:
-                first = first_difference(min(rows), start, pairs, unequal, left, right)
-        different = [own for own in found.values() if own.rows]
-        return RowsCompared((readers[0].finish(), readers[1].finish()), only_in, types, different, first)
+    one, other = row_batches(a), row_batches(b)
+    pairs, only_in = common_columns(one.schema, other.schema)
+    types = {
+        name: (str(one.schema.field(i).type), str(other.schema.field(j).type))
+        for name, i, j in pairs
+        if not alike(one.schema.field(i).type, other.schema.field(j).type)
+    }
+    found = {name: ColumnDifference(name) for name, _, _ in pairs}
+    first: FirstDifference | None = None
+    readers = Reader(one.batches), Reader(other.batches)
+    for start, left, right in side_by_side(*readers):
+        unequal = {name: differing(left.column(i), right.column(j), tolerance) for name, i, j in pairs}
+        for name, i, j in pairs:
+            note(found[name], unequal[name], start, left.column(i), right.column(j))
+        rows = [int(np.argmax(own)) for own in unequal.values() if own.any()]
+        if first is None and rows:
+            first = first_difference(min(rows), start, pairs, unequal, left, right)
+    different = [own for own in found.values() if own.rows]
+    return RowsCompared((readers[0].finish(), readers[1].finish()), only_in, types, different, first)
 
 
 def common_columns(a: pa.Schema, b: pa.Schema) -> tuple[list[tuple[str, int, int]], tuple[list[str], list[str]]]:

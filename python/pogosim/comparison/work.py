@@ -15,7 +15,7 @@ from pogosim.errors import AnalysisError, ToolError
 from pogosim.lines import say, say_text
 from pogosim.outputs import real_output
 from pogosim.picture.options import cannot_read
-from pogosim.reports.options import STRANGE_DATA, unfit
+from pogosim.reports.options import STRANGE_DATA
 
 
 def compare_files(options: argparse.Namespace, prog: str) -> int:
@@ -92,7 +92,7 @@ def rows_of(sources: tuple[Source, Source], options: argparse.Namespace) -> tupl
     except ToolError:
         raise
     except STRANGE_DATA as error:
-        raise ToolError(unfit(error)) from error
+        raise ToolError(f"the rows of {a.name} and {b.name} cannot be compared: {error}".splitlines()[0]) from error
     seeds_differ = bool(a.seeds and b.seeds and a.seeds != b.seeds)
     return rows, ["The seeds differ, so rows do, too."] * (seeds_differ and not rows.is_equal)
 
@@ -139,5 +139,7 @@ def numbers_in(name: str, category: str | None, with_curves: bool) -> Numbers:
         raise AnalysisError(f"{name}: {error}") from error
     except OSError as error:
         raise ToolError(cannot_read(name, error)) from error
+    except ToolError:
+        raise
     except STRANGE_DATA as error:
         raise named(name, error) from error

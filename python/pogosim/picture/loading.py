@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pogosim.command.parser import warn
-from pogosim.errors import AmbiguousStepsWarning, PictureError
+from pogosim.errors import AmbiguousStepsWarning, DamagedFileError, PictureError
 from pogosim.picture.options import cannot_read
 from pogosim.picture.swarm import Recording, read_recording
 
@@ -47,6 +47,8 @@ def sayings(data: str) -> Iterator[None]:
         raise PictureError(str(error) if is_told else f"cannot draw {data}: {error}") from error
     except (TypeError, KeyError, IndexError, AttributeError, OverflowError, np.linalg.LinAlgError) as error:
         raise PictureError(f"cannot draw {data}: its columns or metadata are not those of a run: {error}") from error
+    except DamagedFileError:
+        raise
     except MemoryError as error:
         raise PictureError(f"cannot draw {data}: there is not enough memory") from error
     except ValueError as error:

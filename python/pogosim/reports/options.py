@@ -64,9 +64,9 @@ def stored_runs(options: argparse.Namespace, prog: str) -> list[StoredRun] | Non
         try:
             with Bar("rows", [0]) as bar:
                 runs = runs_of(Path(options.input[0]), options.category, bar.expect)
-        except AnalysisError as error:
+        except AnalysisError:
             tell_warnings(caught, prog)
-            raise AnalysisError(f"cannot analyse {options.input[0]}: {error}") from error
+            raise
         except (ReadAsAWhole, OSError, *STRANGE_DATA):  # reading all of it says what is wrong
             return None
     tell_warnings(caught, prog)
@@ -92,8 +92,9 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
     A file of a killed run is read as far as it goes, with a warning.
 
     Raises:
-        AnalysisError: There is nothing to analyse, or a file is damaged.
-        OSError: A file cannot be read.
+        AnalysisError: There is nothing to analyse.
+        DamagedFileError: A file is damaged.
+        OSError, *STRANGE_DATA: A file cannot be read.
     """
     files = options.input[0] if len(options.input) == 1 else options.input
     with warnings.catch_warnings(record=True) as caught:
@@ -101,12 +102,6 @@ def read_runs(options: argparse.Namespace, prog: str) -> list[Trajectories]:
         try:
             rows, metadata = load_dataframe(files)
             runs = trajectories_of(rows, metadata, options.category)
-        except AnalysisError as error:
-            raise AnalysisError(f"cannot analyse {' '.join(options.input)}: {error}") from error
-        except (ToolError, OSError):
-            raise
-        except STRANGE_DATA as error:
-            raise AnalysisError(unfit(error)) from error
         finally:
             tell_warnings(caught, prog)
     return with_reach(runs, options)
@@ -166,16 +161,20 @@ def reported(prog: str, options: argparse.Namespace, work: Callable[[argparse.Na
         with warnings_told(prog, AmbiguousStepsWarning, DifferentRobotsWarning), without_tex():
             work(options, prog)
         say(f"written to {options.output_dir}")
+    except AnalysisError as error:
+        return complain(prog, unfit(error, options.input))
     except ToolError as error:
         return complain(prog, error)
     except OSError as error:
         # Nothing fits a pattern; otherwise, what is written has no name.
         return complain(prog, str(error) if error.errno is None else told(error, options.output_dir))
     except STRANGE_DATA as error:
-        return complain(prog, unfit(error))
+        return complain(prog, unfit(error, options.input))
     return 0
 
 
-def unfit(error: Exception) -> str:
-    """Return what is said of data for which a library has raised something, in a line."""
-    return f"the data cannot be analysed: {str(error) or type(error).__name__}".splitlines()[0]
+def unfit(error: Exception, names: Sequence[str], task: str = "analyse") -> str:
+    """Return why something cannot be done with the data of some files, in a line that names them."""
+    told = str(error) or type(error).__name__
+    told = told if isinstance(error, ToolError) else told.splitlines()[0]
+    return told if any(name in told for name in names) else f"cannot {task} {' '.join(names)}: {told}"

@@ -43,8 +43,7 @@ def configurations_of(path: str, metadata: Mapping[str, Any]) -> Configurations:
     """
     texts: Mapping[str, Any] = {}
     if not is_pattern(path):
-        with row_batches(Path(path)) as rows:
-            texts = metadata_of(rows.schema)
+        texts = metadata_of(row_batches(Path(path)).schema)
 
     def text(name: str) -> str:
         stored = texts.get(name)

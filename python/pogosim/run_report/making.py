@@ -122,14 +122,13 @@ def sayings_of_data(data: str) -> Iterator[None]:
     try:
         yield
     except AnalysisError as error:
-        raise AnalysisError(f"cannot report on {data}: {error}") from error
+        raise AnalysisError(unfit(error, [data], "report on")) from error
     except ToolError:
         raise
     except OSError as error:
         raise PictureError(cannot_read(data, error)) from error
     except STRANGE_DATA as error:
-        told = unfit(error)
-        raise AnalysisError(told if data in told else f"cannot report on {data}: {told}") from error
+        raise AnalysisError(unfit(error, [data], "report on")) from error
 
 
 def log_path(options: argparse.Namespace) -> Path | None:

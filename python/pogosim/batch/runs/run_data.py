@@ -103,5 +103,6 @@ def batches_of(path: Path) -> Iterator[pa.RecordBatch]:
         reader = ipc.open_file(file)
         for i in range(reader.num_record_batches):
             batch = reader.get_batch(i)
+            batch.validate(full=True)  # or damaged places of texts lead out of memory
             for start in range(0, batch.num_rows, ROWS_PER_BATCH):
                 yield batch.slice(start, ROWS_PER_BATCH)
