@@ -1,14 +1,20 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import pytest
-from pogosim.analysis import laplacian, snapshots
+from pogosim.analysis import laplacian, network, snapshots
 from pogosim.analysis.laplacian import largest_component, spectrum
 from pogosim.analysis.network import (
+    AveragedSpectra,
+    Connectedness,
+    InstantaneousSpectra,
     averaged_spectra,
     contact_time_s,
     graph_over_time,
+    graph_tables,
     instantaneous_spectra,
     ten_periods_s,
     windows_of,
@@ -199,3 +205,22 @@ def test_windows_that_go_on_in_the_next_block_are_whole(monkeypatch: pytest.Monk
         pd.testing.assert_frame_equal(averaged_spectra(run, window_s, reach_mm=250.0), table)
     now = instantaneous_spectra(run, reach_mm=250.0)
     np.testing.assert_allclose(tables[0].filter(like="lambda"), now.filter(like="lambda"))
+
+
+def test_pairs_are_found_once_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(snapshots, "MAX_POINTS", 12)
+    position = np.random.default_rng(3).uniform(0.0, 300.0, (10, 6, 2))
+    (run,) = trajectories_of(rows_of(position), metadata_of())
+    apart = [graph_over_time(run), instantaneous_spectra(run), averaged_spectra(run, 3.0)]
+    searches = 0
+
+    def counted(*arguments: Any) -> Any:
+        nonlocal searches
+        searches += 1
+        return snapshots.pairs_of(*arguments)
+
+    monkeypatch.setattr(network, "pairs_of", counted)
+    together = graph_tables(run, [Connectedness(run), InstantaneousSpectra(run), AveragedSpectra(run, 3.0)])
+    assert searches == 5
+    for one, other in zip(apart, together, strict=True):
+        pd.testing.assert_frame_equal(one, other, check_exact=True)

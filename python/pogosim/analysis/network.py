@@ -8,7 +8,7 @@ can be connected on average; messages that are passed on while robots move see t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from scipy import sparse
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.laplacian import Spectra, spectra
 from pogosim.analysis.neighbourhood import components, ranks
-from pogosim.analysis.snapshots import Integers, pairs_of, snapshots_of, times_of
+from pogosim.analysis.snapshots import Integers, Snapshots, pairs_of, snapshots_of, times_of
 from pogosim.analysis.sums import sum_of_parts
 from pogosim.analysis.trajectories import Run, unwrapped_blocks
 
@@ -26,135 +26,189 @@ from pogosim.analysis.trajectories import Run, unwrapped_blocks
 ROUNDING = 1e-5
 
 
-def graph_over_time(run: Run, reach_mm: float | None = None) -> pd.DataFrame:
-    """Return size and connectedness of the proximity graph at each save time.
+class GraphTable(Protocol):
+    """A table of the proximity graphs of a run; their edges are added block by block."""
 
-    Returns:
-        A row per time: time (s), n_nodes, n_edges, mean_degree, n_components, largest_component_fraction (of the robots
-        that are there).
+    def add(self, own: Snapshots, i: Integers, j: Integers) -> None:
+        """Add the edges at the next block of save times, each once, by the numbers of their points, shape (E,)."""
+
+    def table(self) -> pd.DataFrame:
+        """Return the table, when all blocks have been added."""
+
+
+def graph_tables(run: Run, tables: Sequence[GraphTable], reach_mm: float | None = None) -> list[pd.DataFrame]:
+    """Return several tables of the proximity graphs of a run, whose edges are found once for all of them.
+
+    Args:
+        run: Robots without a position at a time are no nodes then.
+        tables: Empty ones: `Connectedness`, `InstantaneousSpectra`, `AveragedSpectra`.
+        reach_mm: Greatest distance of neighbours; None: that of the run.
     """
     reach = run.reach(reach_mm)
-    shape = len(run.time_s)
-    edges, parts, largest = np.zeros((3, shape), dtype=np.int64)
     for own in snapshots_of(run):
         i, j, _ = pairs_of(own, run.arena, reach)
-        edges[own.times] = np.bincount(own.time[i], minlength=own.length)
-        rank = ranks(components(len(own.robot), i, j), own.time)
-        np.maximum.at(parts[own.times], own.time, rank + 1)
-        largest[own.times] = np.bincount(own.time[rank == 0], minlength=own.length)
-    nodes = run.present
-    there = np.where(nodes > 0, nodes, np.nan)
-    return pd.DataFrame(
-        {
-            "time": run.time_s,
-            "n_nodes": nodes,
-            "n_edges": edges,
-            "mean_degree": 2 * edges / there,
-            "n_components": parts,
-            "largest_component_fraction": largest / there,
-        }
-    )
+        for table in tables:
+            table.add(own, i, j)
+    return [table.table() for table in tables]
+
+
+def graph_over_time(run: Run, reach_mm: float | None = None) -> pd.DataFrame:
+    """Return size and connectedness of the proximity graph at each save time, see `Connectedness`."""
+    return graph_tables(run, [Connectedness(run)], reach_mm)[0]
 
 
 def instantaneous_spectra(
     run: Run, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
 ) -> pd.DataFrame:
-    """Return the extreme Laplacian eigenvalues of the unweighted proximity graph at each save time.
-
-    Args:
-        run: Robots without a position at a time are no nodes then.
-        count: How many of the smallest non-zero eigenvalues.
-        reach_mm: Greatest distance of neighbours; None: that of the run.
-        zero_tol: Greatest eigenvalue that counts as zero.
-
-    Returns:
-        A row per time: time (s), then for the swarm `swarm_lambda_nz_1` ... `swarm_lambda_nz_k` (increasing, NaN where
-        there are fewer), `swarm_lambda_max`, `swarm_n_nodes` and `swarm_n_edges`, and `lcc_...` for its largest
-        connected component.
-    """
-    reach = run.reach(reach_mm)
-    tables = []
-    for own in snapshots_of(run):
-        i, j, _ = pairs_of(own, run.arena, reach)
-        graph = adjacency_of(len(own.robot), i, j, np.ones(len(i)))
-        found = spectra(graph, own.time, own.length, count, zero_tol)
-        tables.append(pd.DataFrame({"time": run.time_s[own.times], **columns(*found)}))
-    return pd.concat(tables, ignore_index=True)
+    """Return the extreme Laplacian eigenvalues of the graph at each save time, see `InstantaneousSpectra`."""
+    return graph_tables(run, [InstantaneousSpectra(run, count, zero_tol)], reach_mm)[0]
 
 
 def averaged_spectra(
     run: Run, window_s: float, count: int = 5, reach_mm: float | None = None, zero_tol: float = 1e-10
 ) -> pd.DataFrame:
-    """Return the extreme Laplacian eigenvalues of the adjacency averaged over windows of time.
+    """Return the extreme Laplacian eigenvalues of graphs averaged over windows of time, see `AveragedSpectra`."""
+    return graph_tables(run, [AveragedSpectra(run, window_s, count, zero_tol)], reach_mm)[0]
+
+
+class Connectedness:
+    """Size and connectedness of the graph at each save time.
+
+    A row per time: time (s), n_nodes, n_edges, mean_degree, n_components, largest_component_fraction (of the robots
+    that are there).
+    """
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.edges, self.parts, self.largest = np.zeros((3, len(run.time_s)), dtype=np.int64)
+
+    def add(self, own: Snapshots, i: Integers, j: Integers) -> None:
+        """Add edges, see `GraphTable`."""
+        self.edges[own.times] = np.bincount(own.time[i], minlength=own.length)
+        rank = ranks(components(len(own.robot), i, j), own.time)
+        np.maximum.at(self.parts[own.times], own.time, rank + 1)
+        self.largest[own.times] = np.bincount(own.time[rank == 0], minlength=own.length)
+
+    def table(self) -> pd.DataFrame:
+        """Return the table."""
+        nodes = self.run.present
+        there = np.where(nodes > 0, nodes, np.nan)
+        return pd.DataFrame(
+            {
+                "time": self.run.time_s,
+                "n_nodes": nodes,
+                "n_edges": self.edges,
+                "mean_degree": 2 * self.edges / there,
+                "n_components": self.parts,
+                "largest_component_fraction": self.largest / there,
+            }
+        )
+
+
+class InstantaneousSpectra:
+    """The extreme Laplacian eigenvalues of the unweighted graph at each save time.
+
+    A row per time: time (s), then for the swarm `swarm_lambda_nz_1` ... `swarm_lambda_nz_k` (increasing, NaN where
+    there are fewer), `swarm_lambda_max`, `swarm_n_nodes` and `swarm_n_edges`, and `lcc_...` for its largest connected
+    component.
+
+    Args:
+        run: The run.
+        count: How many of the smallest non-zero eigenvalues, k.
+        zero_tol: Greatest eigenvalue that counts as zero.
+    """
+
+    def __init__(self, run: Run, count: int = 5, zero_tol: float = 1e-10) -> None:
+        self.time_s, self.count, self.zero_tol = run.time_s, count, zero_tol
+        self.tables: list[pd.DataFrame] = []
+
+    def add(self, own: Snapshots, i: Integers, j: Integers) -> None:
+        """Add edges, see `GraphTable`."""
+        graph = adjacency_of(len(own.robot), i, j, np.ones(len(i)))
+        found = spectra(graph, own.time, own.length, self.count, self.zero_tol)
+        self.tables.append(pd.DataFrame({"time": self.time_s[own.times], **columns(*found)}))
+
+    def table(self) -> pd.DataFrame:
+        """Return the table."""
+        return pd.concat(self.tables, ignore_index=True)
+
+
+class AveragedSpectra:
+    """The extreme Laplacian eigenvalues of the adjacency averaged over windows of time.
 
     Windows follow each other from the first save time on; the last one may be shorter. Nodes are all robots that have
-    a position at some time of the window.
+    a position at some time of the window. A row per window that has a save time: time (s), the middle of its first and
+    last save time, window_s, n_times (save times in it), and the columns of `InstantaneousSpectra`; edges count with
+    any weight.
 
     Args:
-        run: See `instantaneous_spectra`.
+        run: The run.
         window_s: Length of the windows, above 0; infinite: one window.
-        count: See `instantaneous_spectra`.
-        reach_mm: See `instantaneous_spectra`.
-        zero_tol: See `instantaneous_spectra`.
-
-    Returns:
-        A row per window that has a save time: time (s), the middle of its first and last save time, window_s, n_times
-        (save times in it), and the columns of `instantaneous_spectra`; edges count with any weight.
+        count: See `InstantaneousSpectra`.
+        zero_tol: See `InstantaneousSpectra`.
     """
-    number, window = np.unique(windows_of(run.time_s, window_s), return_inverse=True)
-    first = np.searchsorted(window, np.arange(len(number)))
-    last = np.append(first[1:], len(window)) - 1
-    times = last - first + 1
-    tables = []
-    for windows, graph, node_window in averaged_graphs(run, window.reshape(-1), times, run.reach(reach_mm)):
-        tables.append(pd.DataFrame(columns(*spectra(graph, node_window, len(windows), count, zero_tol))))
-    middle = (run.time_s[first] + run.time_s[last]) / 2
-    own = pd.DataFrame({"time": middle, "window_s": window_s, "n_times": times})
-    return pd.concat([own, pd.concat(tables, ignore_index=True)], axis=1)
 
+    def __init__(self, run: Run, window_s: float, count: int = 5, zero_tol: float = 1e-10) -> None:
+        self.window_s, self.count, self.zero_tol = window_s, count, zero_tol
+        self.robots = len(run.robot_id)
+        number, window = np.unique(windows_of(run.time_s, window_s), return_inverse=True)
+        self.window = window.reshape(-1)  # (T,), number of the window of each save time, from 0 on
+        first = np.searchsorted(self.window, np.arange(len(number)))
+        last = np.append(first[1:], len(self.window)) - 1
+        self.times = last - first + 1  # (W,), save times in each window
+        self.middle_s = (run.time_s[first] + run.time_s[last]) / 2
+        # The windows that are not over yet: the first one, their edges, and the robots that are there.
+        self.begin = 0
+        self.key, self.weight = np.zeros((2, 0), dtype=np.int64)
+        self.there = np.zeros(0, dtype=np.int64)
+        self.tables: list[pd.DataFrame] = []
 
-def averaged_graphs(
-    run: Run, window: Integers, times: Integers, reach_mm: float
-) -> Iterator[tuple[range, sparse.csr_array, Integers]]:
-    """Yield the adjacency matrices averaged over windows, of some windows after the other.
-
-    Args:
-        run: See `instantaneous_spectra`.
-        window: Number of the window of each save time, 0 to W - 1, increasing, shape (T,).
-        times: Number of save times in each window, shape (W,).
-        reach_mm: Greatest distance of neighbours.
-
-    Yields:
-        The numbers of the windows; their matrices as one, with the robots that are there at some time of a window as
-        its nodes; and the window of each node, counted from the first of these.
-    """
-    robots = len(run.robot_id)
-    key, weight = np.zeros((2, 0), dtype=np.int64)  # of the edges of windows that are not over yet
-    there = np.zeros(0, dtype=np.int64)  # the robots that are there in those
-    begin = 0
-    for own in snapshots_of(run):
-        i, j, _ = pairs_of(own, run.arena, reach_mm)
-        found, count = np.unique(
-            (window[own.times][own.time[i]] * robots + own.robot[i]) * robots + own.robot[j], return_counts=True
-        )
-        key, inverse = np.unique(np.concatenate([key, found]), return_inverse=True)
-        weight = np.bincount(inverse.reshape(-1), np.concatenate([weight, count]), minlength=len(key)).astype(np.int64)
-        there = np.unique(np.concatenate([there, window[own.times][own.time] * robots + own.robot]))
+    def add(self, own: Snapshots, i: Integers, j: Integers) -> None:
+        """Add edges, see `GraphTable`."""
+        robots, window = self.robots, self.window[own.times][own.time]
+        found, count = np.unique((window[i] * robots + own.robot[i]) * robots + own.robot[j], return_counts=True)
+        self.key, inverse = np.unique(np.concatenate([self.key, found]), return_inverse=True)
+        weight = np.bincount(inverse.reshape(-1), np.concatenate([self.weight, count]), minlength=len(self.key))
+        self.weight = weight.astype(np.int64)
+        self.there = np.unique(np.concatenate([self.there, window * robots + own.robot]))
         # Windows are over that have no time in the next block.
-        end = len(times) if own.times.stop == len(window) else int(window[own.times.stop])
-        if end == begin:
-            continue
-        over = int(np.searchsorted(key, end * robots**2))
-        at, rest = np.divmod(key[:over], robots**2)
+        is_last = own.times.stop == len(self.window)
+        end = len(self.times) if is_last else int(self.window[own.times.stop])
+        if end > self.begin:
+            graph, node_window = self.averaged(end)
+            found_spectra = spectra(graph, node_window, end - self.begin, self.count, self.zero_tol)
+            self.tables.append(pd.DataFrame(columns(*found_spectra)))
+            self.leave_out(end)
+
+    def averaged(self, end: int) -> tuple[sparse.csr_array, Integers]:
+        """Return the averaged adjacency matrices of the windows up to and without one.
+
+        Returns:
+            The matrices as one, with the robots that are there at some time of a window as its nodes; and the window
+            of each node, counted from the first of these.
+        """
+        robots, begin = self.robots, self.begin
+        over = int(np.searchsorted(self.key, end * robots**2))
+        at, rest = np.divmod(self.key[:over], robots**2)
         i, j = np.divmod(rest, robots)
         present = np.zeros((end - begin, robots), dtype=bool)
-        gone = int(np.searchsorted(there, end * robots))
-        present.ravel()[there[:gone] - begin * robots] = True
+        gone = int(np.searchsorted(self.there, end * robots))
+        present.ravel()[self.there[:gone] - begin * robots] = True
         node = np.cumsum(present).reshape(present.shape) - 1
-        share = weight[:over] / times[at]
+        share = self.weight[:over] / self.times[at]
         graph = adjacency_of(int(present.sum()), node[at - begin, i], node[at - begin, j], share)
-        yield range(begin, end), graph, np.nonzero(present)[0]
-        key, weight, there, begin = key[over:], weight[over:], there[gone:], end
+        return graph, np.nonzero(present)[0]
+
+    def leave_out(self, end: int) -> None:
+        """Forget the windows up to and without one."""
+        over = int(np.searchsorted(self.key, end * self.robots**2))
+        gone = int(np.searchsorted(self.there, end * self.robots))
+        self.key, self.weight, self.there, self.begin = self.key[over:], self.weight[over:], self.there[gone:], end
+
+    def table(self) -> pd.DataFrame:
+        """Return the table."""
+        own = pd.DataFrame({"time": self.middle_s, "window_s": self.window_s, "n_times": self.times})
+        return pd.concat([own, pd.concat(self.tables, ignore_index=True)], axis=1)
 
 
 def adjacency_of(nodes: int, i: Integers, j: Integers, weight: Floats) -> sparse.csr_array:

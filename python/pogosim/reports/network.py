@@ -11,10 +11,12 @@ from pathlib import Path
 import pandas as pd
 
 from pogosim.analysis.network import (
-    averaged_spectra,
+    AveragedSpectra,
+    Connectedness,
+    GraphTable,
+    InstantaneousSpectra,
     contact_time_s,
-    graph_over_time,
-    instantaneous_spectra,
+    graph_tables,
     ten_periods_s,
 )
 from pogosim.analysis.trajectories import Run
@@ -47,7 +49,7 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
                        "window there, the whole run")  # fmt: skip
     work = functools.partial(tables_of, count=options.k_first, zero_tol=options.zero_tol)
     each = [(run, {name: own[number] for name, own in windows.items()}) for number, run in enumerate(runs)]
-    found = for_each_run(work, each, options, "graphs", passes=2 + len(windows))
+    found = for_each_run(work, each, options, "graphs")
     folder = output_folder(options)
     for name in found[0]:
         tables = [own[name] for own in found]
@@ -61,9 +63,12 @@ def analyze(options: argparse.Namespace, prog: str) -> None:
 def tables_of(run_and_windows: tuple[Run, dict[str, float]], count: int, zero_tol: float) -> dict[str, pd.DataFrame]:
     """Return all tables of a run by name, given the windows of those of averaged graphs."""
     run, windows = run_and_windows
-    averaged = {name: averaged_spectra(run, window_s, count, zero_tol=zero_tol) for name, window_s in windows.items()}
-    now = instantaneous_spectra(run, count, zero_tol=zero_tol)
-    return {"network_graph": graph_over_time(run), "instantaneous_eigs": now, **averaged}
+    tables: dict[str, GraphTable] = {
+        "network_graph": Connectedness(run),
+        "instantaneous_eigs": InstantaneousSpectra(run, count, zero_tol),
+        **{name: AveragedSpectra(run, window_s, count, zero_tol) for name, window_s in windows.items()},
+    }
+    return dict(zip(tables, graph_tables(run, list(tables.values())), strict=True))
 
 
 def windows_of(runs: Sequence[Run], window_s: float | None) -> dict[str, list[float]]:
