@@ -213,8 +213,8 @@ def missing_runs(by_output: Mapping[str, Sequence[TaskArtifact]], expected: Expe
             if which is None:
                 continue
             ordinal = own[0].manifest.get("combination_ordinal") if expected is None else which
-            choices = own[0].columns if expected is None else expected.choices_of(which)
-            named[which] = MissingRun(output, 0, for_json(choices), ordinal)
+            choices = own[0].batch_choices if expected is None else for_json(expected.choices_of(which))
+            named[which] = MissingRun(output, 0, choices, ordinal)
             found.setdefault(which, []).extend(own)
     if not found:
         return MissingRuns([], 0, 0)

@@ -62,6 +62,12 @@ class TaskArtifact:
         return {name: value for name, value in extra.items() if name not in OF_CAMPAIGNS.run_columns}
 
     @property
+    def batch_choices(self) -> dict[str, Any]:
+        """What tells its combination from others of its batch; its constant columns if its manifest does not say it."""
+        choices = self.manifest.get("batch_choices")
+        return choices if isinstance(choices, dict) else self.columns
+
+    @property
     def lost_columns(self) -> list[str]:
         """Its constant columns that contradict those columns of results which say which run a row is of."""
         extra, own = self.manifest.get("extra_columns", {}), self.manifest
