@@ -13,10 +13,10 @@ apt_packages="build-essential cmake ninja-build ccache pkg-config
     libsdl2-dev libimgui-dev libpng-dev fonts-dejavu-core
     python3 python3-venv ca-certificates"
 # libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films.
-# chromium: a browser to test replays in; macOS has none of that name that needs no window, there those tests are skipped.
+# chromium, firefox-esr: browsers to test pages in; on macOS, where they are not installed, those tests are skipped.
 # gdb, valgrind: what docs/debugging.md shows. gdb-multiarch: gdb for robots that run firmware. slurm*, munge: a cluster of
 # one node to test batches on, see tests/slurm.
-apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg chromium
+apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg chromium firefox-esr
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
     g++-aarch64-linux-gnu qemu-user gdb gdb-multiarch valgrind slurmctld slurmd slurm-client munge"
 apt_tidy_packages="clang-tidy"

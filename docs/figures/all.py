@@ -31,6 +31,7 @@ try:
     import gallery
     import lamps
     import linked
+    import live
     import loads
     import magnetometer
     import messages
@@ -70,6 +71,7 @@ SCRIPTS: dict[str, ModuleType] = {
         gallery,
         lamps,
         linked,
+        live,
         loads,
         magnetometer,
         messages,

@@ -15,6 +15,8 @@ NAMES = ("installing.md: extras",)
 PURPOSES = {
     "dask": "batches with `--backend dask` or `--scheduler`",
     "slurm": "batches with `--slurm` or `--jobqueue`",
+    "watch": "[`pogosim watch`](live.md#in-a-browser)",
+    "notebook": "[live views in notebooks](live.md#in-a-notebook)",
     "learning": "[learning](learning.md)",
     "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`",
 }

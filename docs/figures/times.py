@@ -144,4 +144,5 @@ TIMES = {
     "own_variables": Times("../bench/README.md: own_variables", printed(PYTHON, "bench/own_variables.py")),
     "swarms": Times("performance.md: swarms", swarms),
     "throughput": Times("optimization.md: throughput", throughput),
+    "watching": Times("live.md: watching", printed(PYTHON, "bench/watching.py")),
 }

@@ -185,8 +185,8 @@ int pogosim_run_object(pogosim_run const* run, size_t object, struct pogosim_obj
 /// Puts an object elsewhere, at rest. mm and rad.
 int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, double y_mm, double heading_rad);
 
-/// Moves an object to the free place nearest to a point, mm, where it stands still until its motors or others move it;
-/// `is_moved`: 0: it stays where it is. As a user's hand does, and as that is told in the metadata of the data file.
+/// Moves an object as a user's hand does: towards a point, mm, as far as walls leave it room. It stands still there
+/// until its motors or others move it. `is_moved`: 0: it stays where it is. The metadata of the data file tell it.
 int pogosim_run_drag_object(pogosim_run* run, size_t object, double x_mm, double y_mm, int* is_moved);
 
 /// Switches an object that runs the program off (0) or on, see pogosim_world_set_alive() in world.h.

@@ -13,6 +13,8 @@ import sys
 EXTRAS = {
     "dask": ("distributed>=2023.5",),
     "slurm": ("dask-jobqueue>=0.8.5", "cryptography>=41", "distributed>=2023.5"),
+    "watch": ("websockets>=14",),
+    "notebook": ("anywidget>=0.9",),
     "learning": ("gymnasium>=1.0,<2", "pettingzoo>=1.25,<2"),
     "optim": ("optuna>=4.0", "ribs>=0.12"),  # its name in the original simulator
     "optimize": ("optuna>=4.0", "ribs>=0.12"),

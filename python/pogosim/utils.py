@@ -111,7 +111,11 @@ def warn_of_no_metadata(path: Path) -> None:
 
 def parsed_metadata(schema: pyarrow.Schema) -> dict[str, Any]:
     """Return the metadata of a table as `load_dataframe` does, but outlines in the unit of the file."""
-    metadata = metadata_of(schema)
+    return parsed(metadata_of(schema))
+
+
+def parsed(metadata: dict[str, Any]) -> dict[str, Any]:
+    """Parse the texts that metadata of a run or of a batch are, in their place; returns them."""
     metadata["configuration"] = parse_configuration(metadata.get("configuration", ""))
     if "resolved_configuration" in metadata:
         metadata["resolved_configuration"] = parse_configuration(metadata["resolved_configuration"])

@@ -13,10 +13,10 @@ import pandas as pd
 import pytest
 import yaml
 from pogosim import Simulation
-from pogosim.film.replay import category_data
 from pogosim.object_facts import entries_in
 from pogosim.picture.swarm import KIND, read_recording
 from pogosim.scene import kinds_in
+from pogosim.view.kinds import category_data
 from running import ROOT, example, run
 
 TRAY: dict[str, Any] = {

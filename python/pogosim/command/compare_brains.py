@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pogosim.command.parser import Parser, complain, finite, guarded, warn, whole
+from pogosim.command.parser import Parser, complain, finite, guarded, setting, warn, whole
 from pogosim.errors import ToolError
-from pogosim.extensions import let_find_models, said
+from pogosim.extensions import let_find_models
 from pogosim.firmware.making import FirmwareError, made_in, temporary_project
 from pogosim.installation import find_installation
 from pogosim.lines import say
@@ -55,19 +55,12 @@ def shown(value: Any) -> str:
     return " ".join(str(value).split())
 
 
-def setting(text: str) -> tuple[str, Any]:
+def own_setting(text: str) -> tuple[str, Any]:
     """Return the key and the value that `--set` gives."""
-    from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml  # takes a while
-
-    key, sign, value = text.partition("=")
-    if not key or not sign:
-        raise argparse.ArgumentTypeError(f"expected KEY=VALUE, such as objects.robots.nb=50, found '{text}'")
+    key, value = setting(text)
     if key.split(".")[0] == "parameters":
         raise argparse.ArgumentTypeError(f"{key}: both runs have the parameters of the source; change them there")
-    try:
-        return key, parse_yaml(value)
-    except WRONG_VALUES as error:
-        raise argparse.ArgumentTypeError(f"{key}: not YAML: {said(error)}") from None
+    return key, value
 
 
 def parser(prog: str) -> Parser:
@@ -88,7 +81,7 @@ def parser(prog: str) -> Parser:
     made.add_argument(
         "--set",
         metavar="KEY=VALUE",
-        type=setting,
+        type=own_setting,
         action="append",
         default=[],
         dest="settings",

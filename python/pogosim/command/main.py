@@ -32,6 +32,7 @@ COMMANDS = Table(
     {
         "new": Own("pogosim.command.new:main", "make a project: a program, a configuration and a Makefile"),
         "run": Own("pogosim.command.run:main", "compile a project or a source file, and run it"),
+        "watch": Own("pogosim.command.watch:main", "run a program, and show it live in browsers"),
         "profile": Own("pogosim.command.profile:main", "tell where the cycles of a tick go, on emulated robots"),
         "compare-brains": Own(
             "pogosim.command.compare_brains:main", "find where a program in C and its firmware begin to differ"

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
 from pogosim.errors import ToolError
+from pogosim.extensions import said
 from pogosim.lines import say_error
 from pogosim.outputs import told
 
@@ -103,3 +104,16 @@ def whole(least: int, most: int | None = None) -> Callable[[str], int]:
         return value
 
     return checked
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """Return the key and the value that `--set KEY=VALUE` gives."""
+    from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml  # takes a while
+
+    key, sign, value = text.partition("=")
+    if not key or not sign:
+        raise argparse.ArgumentTypeError(f"expected KEY=VALUE, such as objects.robots.nb=50, found '{text}'")
+    try:
+        return key, parse_yaml(value)
+    except WRONG_VALUES as error:
+        raise argparse.ArgumentTypeError(f"{key}: not YAML: {said(error)}") from None

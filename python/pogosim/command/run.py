@@ -74,15 +74,28 @@ def compile_file(source: Path, pogosim: Installation) -> Path:
         RunError: It does not compile. The compiler has said why.
         CompilerError: An environment variable cannot be understood.
     """
-    program = source.parent / "build" / source.stem
-    program.parent.mkdir(exist_ok=True)
+    program = compiled(source, source.parent / "build" / source.stem, (), pogosim)
+    if pogosim.shared_state.is_file():
+        subprocess.run([pogosim.shared_state, program], check=False)
+    return program
+
+
+def compile_shared_object(source: Path, pogosim: Installation) -> Path:
+    """Compile a program of one file for `pogosim.Simulation`; returns build/NAME.so. Errors as of compile_file()."""
+    return compiled(source, source.parent / "build" / f"{source.stem}.so", ("-shared", "-fPIC"), pogosim)
+
+
+def compiled(source: Path, made: Path, flags: Sequence[str], pogosim: Installation) -> Path:
+    """Compile a file with some flags more; returns what is made. Errors as of compile_file()."""
+    made.parent.mkdir(exist_ok=True)
     compiler = COMPILERS[source.suffix]
     command = [
         *compiler.command(),
         *("-g", "-O2", "-Wall", "-Wextra", "-Wfloat-conversion"),
+        *flags,
         *words_of(compiler.flags),
         os.path.join(source.parent, source.name),  # noqa: PTH118 - ./-x.c, which would be an option without ./
-        *("-o", str(program)),
+        *("-o", str(made)),
         *pogosim.compiler_flags,
     ]
     try:
@@ -93,9 +106,7 @@ def compile_file(source: Path, pogosim: Installation) -> Path:
         ) from None
     if code != 0:
         raise RunError(f"{source} does not compile; see the compiler's messages above")
-    if pogosim.shared_state.is_file():
-        subprocess.run([pogosim.shared_state, program], check=False)
-    return program
+    return made
 
 
 def make_project(folder: Path, pogosim: Installation) -> Path:

@@ -26,9 +26,8 @@ from pogosim.picture.links import box_of
 from pogosim.picture.palette import PALETTE, led_colours
 from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
-from pogosim.scene import Kind
-from pogosim.shapes import Shape
 from pogosim.view import assets
+from pogosim.view.kinds import category_data
 
 FOLDER = Path(__file__).parent
 OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, KIND, "led_rgb", *RGB}
@@ -87,7 +86,7 @@ def page_of(head: dict[str, Any], data: str, picture: str, name: str) -> str:
     """Join elements, style, first picture, program and data."""
     text = json.dumps(head, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     body = [
-        assets.elements(KEYS, head["title"], f"{head['times'][0]:.2f} s", picture, WITHOUT),
+        assets.elements(assets.Parts(KEYS, head["title"], f"{head['times'][0]:.2f} s", picture, WITHOUT)),
         f'<script type="application/json" id="head">{text}</script>',
         f'<script type="text/plain" id="data">{data}</script>',
         f"<script>\n{replay_program()}\n</script>",
@@ -174,26 +173,6 @@ def object_list(objects: pd.DataFrame) -> list[list[Any]]:
         [kinds.index((str(name), int(kind))), int(own) if pd.notna(own) and math.isfinite(own) else None]
         for name, kind, own in zip(objects["robot_category"], objects[KIND], ids, strict=True)
     ]
-
-
-def category_data(name: str, kind: Kind) -> dict[str, Any]:
-    """How objects of a category look, and how far they are heard."""
-    shape = kind.shape
-    return {
-        "name": name,
-        "radius": shape.bounding_radius_mm,
-        "reach": shape.reach_mm,
-        "outline": outline_of(shape),
-        "talks": kind.talks,
-        "range": kind.communication_radius_mm,
-        "passive": not kind.runs_program,
-        "membrane": kind.is_membrane,
-    }
-
-
-def outline_of(shape: Shape) -> list[list[float]] | None:
-    """Corners of a shape; None of a disk."""
-    return None if shape.is_round else np.round(shape.outline(), 3).tolist()
 
 
 def pose_tables(packer: Packer, timeline: Timeline) -> dict[str, Any]:

@@ -152,10 +152,15 @@ def light_opacity(swarm: Swarm, time_s: float, cells: int = LIGHT_CELLS) -> Floa
     points = np.column_stack([x.ravel(), y.ravel()])
     levels = light_levels(swarm.lamps, polygons, points, time_s, swarm.period_mm)
     inside = floor_outline(polygons).contains_points(points)
+    return opacity_of(levels, inside)
+
+
+def opacity_of(levels: Floats, inside: npt.NDArray[np.bool_]) -> Floats:
+    """Opacity of the lamplight of cells with these levels of light, of which some are inside. Shape (cells,)."""
     darkest = levels[inside].min() if inside.any() else levels.min()
     brightest = levels.max()
     if brightest <= darkest:
-        return np.zeros(len(points))
+        return np.zeros(len(levels))
     return np.asarray(np.clip((levels - darkest) / brightest, 0.0, 1.0))
 
 

@@ -42,6 +42,7 @@ class CurrentRun:
         run: None: it is closed, or its last reset failed.
         opened: The newest run, also while it is being opened: Ctrl-C may come before it is `run`.
         lock: Lock of the thread that steps, resets, changes or closes it.
+        is_shared: A view goes on with it in a thread of its own: other threads wait for each other.
         should_pause: Makes `step` return after the present slice.
         process: Id of the process that created it.
         warned: Warnings that were passed on, of this run, of earlier ones, and of simulations that share them.
@@ -51,6 +52,7 @@ class CurrentRun:
         self.run: RunState | None = None
         self.opened: OpenRun | None = None
         self.lock = threading.Lock()
+        self.is_shared = False
         self.should_pause = False
         self.process = os.getpid()
         self.warned = warned

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from pogosim.simulation.firmware_variables import Variable
+    from pogosim.watch.live import LiveRun
+    from pogosim.watch.notebook import RunView
 
 # PyYAML, elftools and pandas are imported where they are used: a short run takes less time than importing one of them.
 
@@ -201,6 +203,7 @@ class Simulation:
         self._current = CurrentRun(checked_warned(warned))
         self._lock = self._current.lock
         self._is_closed = False
+        self._live: LiveRun | None = None  # from the first view on
         self._turn = Turn()
         self._finish = Finalize(self, self._current.finish, exitpriority=0)
         try:
@@ -648,14 +651,50 @@ class Simulation:
         return picture
 
     def _repr_png_(self) -> bytes | None:
-        """Return the picture that a notebook shows for a run in the last line of a cell; None: it is closed."""
+        """Return the picture that a notebook shows for a run where there is no live view; None: it is closed."""
+        return self._png(800)
+
+    def _png(self, size_px: int) -> bytes | None:
+        """Return a square picture; None: the run is closed."""
         if self._current.run is None or self._is_closed:
             return None
         from PIL import Image
 
         file = io.BytesIO()
-        Image.fromarray(self.render()).save(file, "PNG")
+        Image.fromarray(self.render(size_px, size_px)).save(file, "PNG")
         return file.getvalue()
+
+    def view(self, height_px: int = 560) -> RunView:
+        """Return a live view of the run for a notebook, which goes on in a thread of its own while it plays.
+
+        `sim` as the last line of a cell shows one, too. There may be several of one run. What a cell does with the run,
+        such as `sim.step(100)`, and what the view does take turns, step by step; arrays are those of the picture.
+
+        Args:
+            height_px: 200 to 4000.
+
+        Raises:
+            SimulationError: The Python package anywidget is not installed.
+            ConfigurationError: The height is out of range.
+        """
+        from pogosim.watch.notebook import RunView
+
+        return RunView(self, given.integer("height_px", height_px, 200, 4000))
+
+    @property
+    def _live_run(self) -> LiveRun:
+        """The thread that goes on with the run for its views."""
+        if self._live is None:
+            from pogosim.watch.live import LiveRun
+
+            self._live = LiveRun(self)
+        return self._live
+
+    def _ipython_display_(self) -> None:
+        """Show the run in the last line of a cell of a notebook: a live view, or else a picture."""
+        from pogosim.watch.in_notebooks import show
+
+        show(self)
 
     # ---- What can be changed
 
@@ -859,12 +898,14 @@ class Simulation:
         return run
 
     def _busy(self) -> threading.Lock:
-        """Return the lock for a `with` block. A second thread gets an error instead of wrong results.
+        """Return the lock for a `with` block.
+
+        A second thread gets an error instead of wrong results; while a view goes on with the run, threads wait.
 
         Acquiring and releasing a threading.Lock is atomic, so Ctrl-C cannot leave it locked.
         """
         check_process(self._current.process)
-        if self._lock.locked():
+        if self._lock.locked() and not self._current.is_shared:
             raise SimulationError("the simulation is in use by another thread: give each thread one of its own")
         return self._lock
 

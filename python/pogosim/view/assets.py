@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from pogosim.pages import filled
@@ -25,22 +26,46 @@ def program(*own: str) -> str:
     return '(() => {\n"use strict";\n\n' + "\n".join(parts) + "})();"
 
 
-def elements(keys: Mapping[str, str], heading: str = "", clock: str = "", picture: str = "", without: str = "") -> str:
-    """Return the elements of a view as HTML.
+@dataclass(frozen=True)
+class Parts:
+    """What views differ in.
 
-    Args:
-        keys: What is said in its help of keys that not every view has, by the keys.
-        heading: Before the program has one.
+    Attributes:
+        keys: What is said in the help of keys that not every view has, by the keys.
+        heading: The title before the program has one.
         clock: Likewise, the time.
         picture: Likewise, HTML of a picture.
         without: What is said where programs are blocked.
+        panels: HTML over the arena.
+        controls: HTML among the controls below it.
     """
+
+    keys: Mapping[str, str]
+    heading: str = ""
+    clock: str = ""
+    picture: str = ""
+    without: str = ""
+    panels: str = ""
+    controls: str = ""
+
+
+def module(*own: str) -> str:
+    """Return the same as a module of JavaScript, which exports what the last text says."""
+    return "\n".join([*map(text_of, COMMON), *own])
+
+
+def elements(own: Parts) -> str:
+    """Return the elements of a view as HTML."""
     parts = {
-        "@@HEADING@@": html.escape(heading),
-        "@@CLOCK@@": html.escape(clock),
-        "@@PICTURE@@": picture,
-        "@@NOSCRIPT@@": f"<noscript><p>{html.escape(without)}</p></noscript>" if without else "",
-        "@@KEYS@@": "\n".join(f"<dt>{html.escape(key)}</dt><dd>{html.escape(does)}</dd>" for key, does in keys.items()),
+        "@@HEADING@@": html.escape(own.heading),
+        "@@CLOCK@@": html.escape(own.clock),
+        "@@PICTURE@@": own.picture,
+        "@@NOSCRIPT@@": f"<noscript><p>{html.escape(own.without)}</p></noscript>" if own.without else "",
+        "@@KEYS@@": "\n".join(
+            f"<dt>{html.escape(key)}</dt><dd>{html.escape(does)}</dd>" for key, does in own.keys.items()
+        ),
+        "@@PANELS@@": own.panels,
+        "@@CONTROLS@@": own.controls,
     }
     return filled(text_of("view.html"), parts)
 
