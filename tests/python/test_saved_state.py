@@ -513,3 +513,31 @@ def test_links_that_a_host_cuts_after_a_restore_have_not_broken(
     broken = [record.getMessage() for record in caplog.records if "has broken" in record.getMessage()]
     assert len(broken) == 1
     assert "object 4 of 'robots' to object 5" in broken[0]
+
+
+def test_many_runs_go_back_together_or_some_of_them() -> None:
+    program, settings = ROOT / "examples" / "hanabi" / "hanabi.so", {**NO_FILES, "objects.robots.nb": 5}
+    with pogosim.VectorSimulation(program, SIMPLE, seeds=range(3), set=settings) as runs:
+        runs.step(50)
+        states = runs.save()
+        runs.step(40)
+        after = [simulation.state_hash for simulation in runs]
+        runs.restore(states)
+        assert [simulation.steps for simulation in runs] == [50, 50, 50]
+        runs.step(40)
+        assert [simulation.state_hash for simulation in runs] == after
+        runs.restore([states[2]], which=2)
+        assert [simulation.steps for simulation in runs] == [90, 90, 50]
+        (only,) = runs.save(which=[False, True, False])
+        runs.restore([only, states[0]], which=[1, 0])
+        assert [simulation.steps for simulation in runs] == [50, 90, 50]
+        for wrong, which, told in (
+            (states[:2], None, "states: expected 3, one for each run, found 2"),
+            (None, None, "states: expected 3, one for each run, found None"),
+            ([states[0], states[0]], [0, 0], "each run can be named once only"),
+            ([states[0]], 7, "there is no run 7"),
+            ([states[0]], 1, "another run"),
+            ([5], 1, "run 1: state: expected what save"),
+        ):
+            with pytest.raises(ConfigurationError, match=told):
+                runs.restore(wrong, which=which)  # type: ignore[arg-type]

@@ -677,6 +677,7 @@ class Simulation:
             SimulationError: The Python package anywidget is not installed.
             ConfigurationError: The height is out of range.
         """
+        check_process(self._current.process)
         from pogosim.watch.notebook import RunView
 
         return RunView(self, given.integer("height_px", height_px, 200, 4000))

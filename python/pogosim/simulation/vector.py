@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import shown
 from pogosim.firmware import is_firmware
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import RunState, check_process, chosen_rows
@@ -22,6 +23,7 @@ from pogosim.simulation.library import OK
 from pogosim.simulation.many_runs import ManyRuns, RunThreads, all_held
 from pogosim.simulation.objects import chosen_index
 from pogosim.simulation.run import CLOSED, MOST_STEPS, Simulation, checked_seed
+from pogosim.simulation.saved_state import SavedState
 from pogosim.simulation.vector_brain import VectorBrain
 
 MOST_THREADS = 1024
@@ -139,7 +141,7 @@ class VectorSimulation:
 
     def _each(self, function: Callable[[Simulation], T], chosen: Sequence[int]) -> list[T]:
         """Call a function with each of some runs."""
-        self._check_outside("each, step and reset")
+        self._check_outside("each, step, reset, save and restore")
         context = copy_context()
         context.run(callers.set, (*callers.get(), self))
         calls = [
@@ -185,7 +187,7 @@ class VectorSimulation:
         """
         steps = given.integer("steps", steps, least=0)
         check_process(self._process)
-        self._check_outside("each, step and reset")
+        self._check_outside("each, step, reset, save and restore")
         runs = self._runs()
         failed: dict[int, SimulationError] = {}
         with self._all_held():
@@ -253,17 +255,53 @@ class VectorSimulation:
             ConfigurationError: There are more or fewer seeds than runs, no run of an index, or one is there twice.
         """
         self._check_open()
-        if which is None:
-            chosen = list(range(len(self)))
-        else:
-            chosen = chosen_rows("which", which, len(self), "run", "the simulation has").tolist()
-        if len(set(chosen)) < len(chosen):
-            raise ConfigurationError("which: each run can be named once only")
+        chosen = self._chosen(which)
         new_seeds = [None] * len(chosen) if seeds is None else checked_seeds(seeds)
         if len(new_seeds) != len(chosen):
             raise ConfigurationError(f"seeds: expected {len(chosen)}, one for each run, found {len(new_seeds)}")
         seed_of = {id(self.simulations[run]): seed for run, seed in zip(chosen, new_seeds, strict=True)}
         self._each(lambda simulation: simulation.reset(seed_of[id(simulation)]), chosen)
+
+    def save(self, which: npt.ArrayLike | None = None) -> list[SavedState]:
+        """Copy the states of some of them, or of all, see `Simulation.save`. `which`: as of `reset`. In their order.
+
+        Raises:
+            ConfigurationError: A run cannot be saved, there is no run of an index, or one is there twice.
+        """
+        self._check_open()
+        return self._each(Simulation.save, self._chosen(which))
+
+    def restore(self, states: Sequence[SavedState], which: npt.ArrayLike | None = None) -> None:
+        """Go on from states of these runs, see `Simulation.restore`.
+
+            states = runs.save()
+            runs.restore(states)
+
+        Args:
+            states: One for each run that goes back, its own.
+            which: As of `reset`.
+
+        Raises:
+            ConfigurationError: There are more or fewer states than runs, one is of another run, there is no run of an
+                index, or one is there twice. Of a state of another run, those of the others are restored.
+        """
+        self._check_open()
+        chosen = self._chosen(which)
+        found = list(states) if isinstance(states, Sequence) else None
+        if found is None or len(found) != len(chosen):
+            told = shown(states) if found is None else str(len(found))
+            raise ConfigurationError(f"states: expected {len(chosen)}, one for each run, found {told}")
+        state_of = {id(self.simulations[run]): state for run, state in zip(chosen, found, strict=True)}
+        self._each(lambda simulation: simulation.restore(state_of[id(simulation)]), chosen)
+
+    def _chosen(self, which: npt.ArrayLike | None) -> list[int]:
+        """Return the indices of the runs that an argument chooses, each once; None: all."""
+        if which is None:
+            return list(range(len(self)))
+        chosen: list[int] = chosen_rows("which", which, len(self), "run", "the simulation has").tolist()
+        if len(set(chosen)) < len(chosen):
+            raise ConfigurationError("which: each run can be named once only")
+        return chosen
 
     @property
     def positions(self) -> npt.NDArray[Any]:
