@@ -144,8 +144,8 @@ int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint
 
 /// What a picture shows of a run, all of one moment. The host gives the memory; a NULL is left out.
 struct pogosim_view {
-    double time_s;
-    int64_t step;
+    double time_s;       ///< simulated time
+    int64_t step;        ///< time steps since the beginning
     float* poses;        ///< shape (objects, 3): x and y, mm; heading, rad, NaN of membranes
     uint32_t* led_rgb;   ///< shape (objects): head LED, 0xRRGGBB; 2^32 - 1 for what runs no program
     float* parts_mm;     ///< shape (parts, 2): x and y of the bodies of membranes, object by object

@@ -283,7 +283,7 @@ class VectorSimulation:
 
         Raises:
             ConfigurationError: There are more or fewer states than runs, one is of another run, there is no run of an
-                index, or one is there twice. Of a state of another run, those of the others are restored.
+                index, or one is there twice. When a state is of another run, all others are restored.
         """
         self._check_open()
         chosen = self._chosen(which)

@@ -75,7 +75,7 @@ class LivePage:
             sim.run()
 
     Attributes:
-        address: Of the page, with which one may steer; it listens on this machine only.
+        address: The page that steers; it is served on this machine only.
     """
 
     def __init__(self, simulation: Simulation) -> None:
