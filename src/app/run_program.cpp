@@ -219,6 +219,8 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
     check_options.run.strict = options.strict;
     check_options.run.conversions = conversions(options);
     check_options.run.film = options.video;
+    check_options.run.save_state_at_s = options.save_at_s;
+    check_options.run.save_state_every_s = options.save_every_s;
     check_options.picture = options.picture;
     Problems problems;
     Scenario scenario = read_scenario(options.config, load_options(options), object_types(), problems);
@@ -226,7 +228,8 @@ Ended check(pogosim_program const& program, CommandLine const& options) {
         scenario.seed = options.seed;
     }
     problems.collect([&] { check_needs_no_host(scenario); });
-    problems.collect([&] { take_state(scenario, options); });
+    problems.collect([&] { check_state_file(scenario, options); });
+    problems.collect([&] { check_options.run.from_state = take_state(scenario, options); });
     CheckResult const result = check_run(linked_program(program, process_name()), scenario, check_options, problems);
     flush_logs();
     if (result.interrupted) {

@@ -11,7 +11,8 @@ namespace pogosim {
 /// While this exists, what this thread notes is hashed.
 class InputHash {
 public:
-    InputHash() : before_(of_thread_) { of_thread_ = this; }
+    /// `value`: of what was read before.
+    explicit InputHash(std::uint64_t value = kFnvBasis) : before_(of_thread_), value_(value) { of_thread_ = this; }
     ~InputHash() { of_thread_ = before_; }
     InputHash(InputHash const&) = delete;
     InputHash& operator=(InputHash const&) = delete;
@@ -29,7 +30,7 @@ private:
     static inline constinit thread_local InputHash* of_thread_ = nullptr;
 
     InputHash* before_;
-    std::uint64_t value_ = kFnvBasis;
+    std::uint64_t value_;
 };
 
 }  // namespace pogosim

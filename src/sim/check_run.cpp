@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "base/counted.hpp"
+#include "base/input_hash.hpp"
 #include "base/locked_file.hpp"
 #include "base/log.hpp"
 #include "config/find_file.hpp"
@@ -74,15 +76,17 @@ bool is_world_known(Problems const& problems) {
 }
 
 /// Fits their curve to the table now, so that one that determines none hides nothing else: the default model is used
-/// then, as it is where keys of the table are wrong.
-void check_magnetometers(Scenario& scenario, Problems& problems) {
+/// then, as it is where keys of the table are wrong. Returns the InputHash of the table.
+std::uint64_t check_magnetometers(Scenario& scenario, Problems& problems) {
     auto const is_of_table = [](std::string const& path) { return path.starts_with("magnetometer.csv"); };
+    InputHash const read;
     MagnetometerConfig checked;
     checked.seed = scenario.magnetometer.seed;
     if (std::ranges::none_of(problems.paths(), is_of_table)) {
         problems.collect([&] { checked.spec = magnetometers_of(scenario, 0); });
     }
     scenario.magnetometer = checked;
+    return read.value();
 }
 
 /// The same run, which writes nothing.
@@ -128,6 +132,9 @@ std::unique_ptr<Simulation> built(ProgramImage const& program, Scenario scenario
     RunOptions run;
     run.log = std::move(log);
     run.conversions = options.run.conversions;
+    run.save_state_at_s = options.run.save_state_at_s;
+    run.save_state_every_s = options.run.save_state_every_s;
+    run.inputs = options.run.inputs;
     problems.collect([&] { simulation = std::make_unique<Simulation>(program, std::move(scenario), std::move(run)); });
     return simulation;
 }
@@ -224,15 +231,15 @@ std::string summary_of(World const& world) {
 
 }  // namespace
 
-CheckResult check_run(ProgramImage const& program, Scenario const& written, CheckOptions const& options,
-                      Problems& problems) {
+CheckResult check_run(ProgramImage const& program, Scenario const& written, CheckOptions options, Problems& problems) {
     CheckResult result;
+    bool const is_understood = problems.empty();
     Scenario scenario = written;
     if (problems.has_key("frames_name")) {
         scenario.view.save_video_period_s = -1.0;  // there are no names to look at
     }
     check_files(scenario, options, problems);
-    check_magnetometers(scenario, problems);
+    options.run.inputs = check_magnetometers(scenario, problems);
     if (problems.empty() && starts_blank(scenario)) {
         warn_of_blank_start(scenario);
     }
@@ -245,6 +252,9 @@ CheckResult check_run(ProgramImage const& program, Scenario const& written, Chec
         simulation = built(program, stand_in(scenario), options, of_stand_in, silent);
     } else {
         result.summary = summary_of(simulation->world());
+        if (options.run.from_state && is_understood) {  // a mistake in a key would be a difference, too
+            problems.collect([&] { simulation->check_state(*options.run.from_state); });
+        }
     }
     if (simulation) {
         check_programs(*simulation, is_stand_in, options.run.strict, problems);

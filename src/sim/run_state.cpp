@@ -69,32 +69,33 @@ StateFile Simulation::kind_of_state() const {
             .rows = recorder_.all_rows()};
 }
 
+void Simulation::check_state(StateFile const& saved) const {
+    check_identity(saved, identity_of(controllers_.image(), scenario_, world_, brains_, inputs_));
+    std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
+    // A run that was killed at its very end has nothing left to do.
+    bool const may_be_over = options_.save_state_every_s.has_value();
+    if (saved.has_ended && !may_be_over) {
+        throw ConfigError(time + ", when its program ended the run: there is nothing to go on with");
+    }
+    double const most_s = scenario_.simulation_time_s + (may_be_over ? world_.time_step_s : 0.0);
+    if (saved.time_s >= most_s) {
+        throw ConfigError(fmt::format("{}, and simulation_time is {} s: set a longer one (--set simulation_time=)",
+                                      time, scenario_.simulation_time_s));
+    }
+    if (options_.save_state_at_s && *options_.save_state_at_s < saved.time_s) {
+        throw ConfigError(fmt::format("{}: --at {} is before that", time, *options_.save_state_at_s));
+    }
+}
+
 /// What is known before any robot runs.
 void Simulation::check_states() {
-    if (options_.from_state || !options_.save_state.empty()) {
-        identity_ = identity_of(controllers_.image(), scenario_, world_, brains_, inputs_);
-    }
     if (options_.from_state) {
-        StateFile const& saved = *options_.from_state;
-        check_identity(saved, identity_);
-        std::string const time = fmt::format("--from-state: '{}' is of t = {} s", saved.file.string(), saved.time_s);
-        // A run that was killed at its very end has nothing left to do.
-        bool const may_be_over = options_.save_state_every_s.has_value();
-        if (saved.has_ended && !may_be_over) {
-            throw ConfigError(time + ", when its program ended the run: there is nothing to go on with");
-        }
-        double const most_s = scenario_.simulation_time_s + (may_be_over ? world_.time_step_s : 0.0);
-        if (saved.time_s >= most_s) {
-            throw ConfigError(fmt::format("{}, and simulation_time is {} s: set a longer one (--set simulation_time=)",
-                                          time, scenario_.simulation_time_s));
-        }
-        if (options_.save_state_at_s && *options_.save_state_at_s < saved.time_s) {
-            throw ConfigError(fmt::format("{}: --at {} is before that", time, *options_.save_state_at_s));
-        }
+        check_state(*options_.from_state);
     }
     if (options_.save_state.empty()) {
         return;
     }
+    identity_ = identity_of(controllers_.image(), scenario_, world_, brains_, inputs_);
     if (options_.save_state_at_s && *options_.save_state_at_s > scenario_.simulation_time_s) {
         throw ConfigError(fmt::format("--at {}: the run ends at {} s (simulation_time)", *options_.save_state_at_s,
                                       scenario_.simulation_time_s));

@@ -74,8 +74,9 @@ std::unique_ptr<PhysicsEngine> make_physics(Scenario const& scenario, World cons
     }
 }
 
+/// `inputs`: InputHash of what was read before, and then of this, too.
 World make_world(Scenario const& scenario, std::uint32_t seed, std::uint64_t& inputs) {
-    InputHash const read;
+    InputHash const read(inputs);
     World world = build_world(scenario, seed);
     inputs = read.value();
     return world;
@@ -93,6 +94,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
     : scenario_(std::move(scenario)),
       options_(std::move(options)),
       seed_(seed_of(scenario_)),
+      inputs_(options_.inputs),
       world_(make_world(scenario_, seed_, inputs_)),
       parameters_(scenario_, options_.conversions),
       crash_handler_(code_of_robots(), reinterpret_cast<void const*>(program.main), scenario_.user_code_timeout_s),

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/fnv_1a.hpp"
 #include "base/log.hpp"
 #include "base/worker_pool.hpp"
 #include "brain/host_brain.hpp"
@@ -70,6 +71,7 @@ struct RunOptions {
     std::optional<double> save_state_at_s{};        // absent: at the end of the run
     std::optional<double> save_state_every_s{};     // of wall-clock time, where it can be saved; absent: once
     std::shared_ptr<StateFile const> from_state{};  // from which the run goes on; null: it begins anew
+    std::uint64_t inputs = kFnvBasis;               // InputHash of what was read for the scenario before
     std::optional<Restart> restarted{};             // by the user, in the window of the run before
     std::function<RestartCheck()> check_restart = [] { return RestartCheck{}; };  // see WindowSetup
 };
@@ -170,6 +172,9 @@ public:
 
     /// Goes on from a state of this run, as it did then. Arrays of the world stay where they are.
     void restore(SavedState const& saved);
+
+    /// Before start(): throws ConfigError, which says why, if the run cannot go on from this state. Does not load it.
+    void check_state(StateFile const& saved) const;
 
     /// The state for another process, to go on from it there, and what kind of run it is of. Throws ConfigError, see
     /// Brain::append_for_process().
@@ -278,7 +283,7 @@ private:
     Scenario scenario_;
     RunOptions options_;
     std::uint32_t seed_;
-    std::uint64_t inputs_ = 0;  // InputHash of the world
+    std::uint64_t inputs_;  // InputHash of the world
     World world_;
     UserParameters parameters_;
     CrashHandler crash_handler_;
@@ -305,7 +310,7 @@ private:
     Touches touches_;
     mutable std::optional<ObservedMotions> observed_motions_;  // from the first look at them on
     std::unique_ptr<WindowDriver> window_;                     // null without a window
-    RunIdentity identity_;                                     // as it began; empty: no state is saved or taken
+    RunIdentity identity_;                                     // as it began; empty: no state is saved
     std::unique_ptr<StateOutput> state_output_;                // null: no state is saved, or it was
     bool is_save_late_ = false;                                // the state is due, and a robot waits
     std::chrono::steady_clock::time_point saved_at_{};         // with save_state_every_s: when that was done last

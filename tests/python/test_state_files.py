@@ -381,6 +381,13 @@ def refused(program: Path, folder: Path, settings: Settings, *arguments: str) ->
     return lines[0]
 
 
+def refused_with_and_without_run(program: Path, folder: Path, settings: Settings, *arguments: str) -> str:
+    """The one line that refuses a run, and --check-config, too."""
+    line = refused(program, folder, settings, *arguments)
+    assert refused(program, folder, settings, *arguments, "--check-config") == line
+    return line
+
+
 def test_program_that_allocates_memory_is_told_why(tmp_path: Path) -> None:
     globals_ = "#include <stdlib.h>\nstatic int *numbers = NULL;"
     step = "if (!numbers) { numbers = malloc(100); } numbers[0]++;"
@@ -423,7 +430,7 @@ def test_other_runs_are_refused_with_what_differs(saved: tuple[Path, Path], tmp_
     program, state = saved
 
     def why(settings: Settings, *arguments: str, other: Path = program) -> str:
-        return refused(other, tmp_path / "run", settings, "--from-state", str(state), *arguments)
+        return refused_with_and_without_run(other, tmp_path / "run", settings, "--from-state", str(state), *arguments)
 
     assert "'objects: robots: nb: 3' then, and 'objects: robots: nb: 4' now" in why({"objects.robots.nb": 4})
     assert "another configuration" in why({"parameters": {"a": 1}})
@@ -483,10 +490,48 @@ def test_files_are_those_that_the_run_has_read(versions: tuple[Settings, str, by
     assert process.returncode == 130, errors
     end_s = float(load_dataframe(folder / "data.feather")[0].time.max()) + 3
     settings["simulation_time"] = end_s
-    assert "'x' is of a" in refused(example("helloworld"), folder, settings, "--from-state", "x")
+    going_on = ("--from-state", "x")
+    assert "'x' is of a" in refused_with_and_without_run(example("helloworld"), folder, settings, *going_on)
     (folder / name).write_bytes(first)
-    result = run(example("helloworld"), folder, settings, ["--from-state", "x"])
+    result = run(example("helloworld"), folder, settings, [*going_on, "--check-config"])
     assert result.code == 0, result.text
+    result = run(example("helloworld"), folder, settings, going_on)
+    assert result.code == 0, result.text
+
+
+def test_check_takes_a_state_that_fits_and_does_not_load_it(saved: tuple[Path, Path], tmp_path: Path) -> None:
+    program, state = saved
+    folder = tmp_path / "run"
+    settings = {
+        "simulation_time": 1.0,
+        "message_log": "messages.feather",
+        "enable_console_logging": True,
+        "save_video_period": 0.1,
+        "flash_state": {"input_file": "flash.bin", "output_file": "flash.bin"},
+        "threads": 1,
+    }
+    folder.mkdir()
+    (folder / "data.feather").write_bytes(b"of an earlier part")
+    checked = run(program, folder, settings, ["--from-state", str(state), "--check-config"])
+    assert (checked.code, checked.errors) == (0, "")
+    assert checked.output == "scene.yaml: no mistakes found: 3 robots\n"
+    assert sorted(path.name for path in folder.iterdir()) == ["data.feather", "scene.yaml"]
+    result = run(program, folder, settings, ["--from-state", str(state)])
+    assert result.code == 0, result.text
+
+
+def test_check_compares_a_state_with_a_configuration_that_it_can_read(saved: tuple[Path, Path], tmp_path: Path) -> None:
+    program, state = saved
+    going_on = ("--from-state", str(state), "--check-config")
+    line = refused(program, tmp_path, {"time_step": "fast"}, *going_on)
+    assert "scene.yaml:" in line
+    assert "time_step" in line
+    assert "--from-state" not in line
+    result = run(program, tmp_path, {"time_step": 0.005}, [*going_on, "--picture", "missing/start.png"])
+    assert result.code == 2
+    assert result.errors.count("Error: ") == 2
+    assert "there is no folder" in result.errors
+    assert "'time_step: 0.01' then, and 'time_step: 0.005' now" in result.errors
 
 
 def test_files_that_are_no_states_are_refused(saved: tuple[Path, Path], tmp_path: Path) -> None:
@@ -553,7 +598,8 @@ def test_state_that_a_run_goes_on_from_is_none_of_its_files(saved: tuple[Path, P
         {"enable_console_logging": True, "console_filename": "x"},
         {"data_filename": "rows.feather"},
     ):
-        message = refused(program, tmp_path, {"simulation_time": 1.0, **settings}, "--from-state", "x")
+        longer = {"simulation_time": 1.0, **settings}
+        message = refused_with_and_without_run(program, tmp_path, longer, "--from-state", "x")
         assert "--from-state: the run needs 'x' for something else, or would overwrite it" in message
         assert (tmp_path / "x").read_bytes() == state.read_bytes()
 
