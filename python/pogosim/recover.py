@@ -31,6 +31,7 @@ from pogosim.tables import table_writer, write_metadata_beside
 
 # An Arrow file begins with this; behind it stands a stream of record batches.
 MAGIC = b"ARROW1\0\0"
+END = b"ARROW1"  # behind the footer
 
 # Metadata of files that the simulator writes: of unfinished ones, and of all.
 INCOMPLETE = b"incomplete"
@@ -106,7 +107,8 @@ def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
     """Open the rows of a data file of the simulator, complete or not.
 
     Raises:
-        RecoverError: The file is none of the simulator's, or ends before its first row could.
+        NoRowsError: The file ends before its first row could.
+        RecoverError: It is none of the simulator's, or damaged before its first row.
     """
     if file.read(len(MAGIC)) != MAGIC:
         raise RecoverError(f"{path} is not a data file of the simulator")
@@ -114,11 +116,23 @@ def open_rows(path: PathLike, file: IO[bytes]) -> ipc.RecordBatchStreamReader:
         reader = ipc.open_stream(file)
     except DAMAGED as error:
         reraise_system_error(error)
-        raise NoRowsError(f"{path} is truncated before its first row") from error
+        if ends_in_schema(file):
+            raise NoRowsError(f"{path} is truncated before its first row") from error
+        raise RecoverError(f"{path} is damaged before its first row; copy it again, or repeat its run") from error
     metadata = reader.schema.metadata or {}
     if not any(key in metadata for key in OURS):
         raise RecoverError(f"{path} is not a data file of the simulator: its metadata have no configuration")
     return reader
+
+
+def ends_in_schema(file: IO[bytes]) -> bool:
+    """Tell whether a file ends within the message that says what columns it has, which comes before all rows."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - len(END)))
+    has_footer = file.read() == END
+    file.seek(len(MAGIC))
+    prefix = file.read(8)  # four bytes 0xff, and how many bytes follow
+    return not has_footer and (len(prefix) < 8 or file.tell() + int.from_bytes(prefix[4:], "little") > size)
 
 
 def with_readable_names(schema: pa.Schema) -> pa.Schema:
@@ -151,7 +165,7 @@ def read_unfinished(path: PathLike) -> Unfinished:
 
     Raises:
         FileNotFoundError: There is no such file.
-        RecoverError: The file is none of the simulator's, or ends before its first row could.
+        RecoverError: The file is none of the simulator's, damaged before its first row, or ends before that could.
     """
     check_is_file(Path(path))
     with Path(path).open("rb") as file:

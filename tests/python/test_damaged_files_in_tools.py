@@ -13,6 +13,7 @@ from pogosim.analysis.stored_runs import runs_of
 from pogosim.analysis.trajectories import trajectories_of
 from pogosim.command.main import main
 from pogosim.errors import DamagedFileError
+from pogosim.recover import MAGIC
 from pogosim.reports.command import ANALYSES
 from pogosim.row_batches import RowFile, row_batches
 from pogosim.utils import load_dataframe
@@ -134,6 +135,41 @@ def test_all_tools_say_the_same_of_a_damaged_file(
     (line,) = said
     assert line.startswith(f"{data} is ")
     assert "; to recover it: pogosim-recover " in line or "; copy it again, or repeat its run" in line
+
+
+def unfinished_swarm(path: Path) -> tuple[Path, int]:
+    """Write a data file as a run that goes on has it. Returns how many bytes come before its rows, too."""
+    write_rows(path, swarm(), metadata_of())
+    table = feather.read_table(path)
+    table = table.replace_schema_metadata({**table.schema.metadata, b"incomplete": b"yes"})
+    with path.open("wb") as file:
+        file.write(MAGIC)
+        ipc.new_stream(file, table.schema).write_table(table)
+    return path, len(MAGIC) + table.schema.serialize().size
+
+
+def test_part_without_rows_may_be_left_out_but_not_one_that_is_damaged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, before_rows = unfinished_swarm(tmp_path / "unfinished.feather")
+    unfinished = path.read_bytes()
+    whole = file_of("feather", swarm(), tmp_path / "whole.feather")
+    data = tmp_path / "damaged.feather"
+
+    def told(tool: str, content: bytes) -> str:
+        data.write_bytes(content)
+        assert run(tool, data, whole, tmp_path) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        return line
+
+    for count in (len(MAGIC), len(MAGIC) + 5, len(MAGIC) + 8, before_rows - 1):
+        assert "damaged.feather is truncated before its first row" in told("recover", unfinished[:count])
+        assert f"no run goes on from a saved state in {whole}" in told("join", unfinished[:count])
+    for content in (unfinished, whole.read_bytes(), whole.read_bytes()[:-20]):
+        place = 24  # in the message that says what columns there are
+        damage = content[:place] + bytes(50) + content[place + 50 :]
+        for tool in ("recover", "join"):
+            assert "damaged.feather is damaged before its first row; copy it again" in told(tool, damage)
 
 
 def test_heading_that_no_robot_can_have_is_none(tmp_path: Path) -> None:
