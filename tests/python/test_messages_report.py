@@ -165,6 +165,15 @@ def test_what_is_no_log_is_one_message(
     assert not (tmp_path / "out").exists()
 
 
+def test_file_among_logs_that_is_none_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = write_rows(tmp_path / "log.feather", log_of(("a", 2, 0.8, 10, 3)), metadata_of())
+    data = write_rows(tmp_path / "data.feather", rows_of(np.zeros((2, 3, 2))), metadata_of())
+    for files in ([log, data], [data, log], [tmp_path / "*.feather"]):
+        assert analyze("messages", ["-i", *map(str, files), "-o", str(tmp_path / "out")], PROG) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert f"{data} is no message log (it has no column outcome): set message_log in the configuration" in line
+
+
 def test_unknown_category_and_empty_log_are_one_message(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = log_of(("a", 2, 0.8, 10, 3))
     path = write_rows(tmp_path / "m.feather", log, metadata_of())

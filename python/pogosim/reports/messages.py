@@ -23,6 +23,7 @@ from pogosim.fonts import literal
 from pogosim.reports.figures import legend_below, new_figure, save
 from pogosim.reports.groups import MOST_CURVES
 from pogosim.reports.options import output_folder, write_table
+from pogosim.row_batches import row_batches
 from pogosim.utils import load_dataframe
 
 SENDER = "sender_category"
@@ -42,10 +43,8 @@ def read_log(options: argparse.Namespace, prog: str) -> tuple[pd.DataFrame, list
         rows, metadata = load_dataframe(files)
     for warning in caught:
         warn(prog, warning.message)
-    if "outcome" not in rows:
-        raise AnalysisError(
-            f"{name} is no message log (it has no column outcome): set message_log in the configuration"
-        )
+    if "outcome" not in rows or rows["outcome"].isna().any():
+        check_are_logs(metadata.get("files", options.input))
     if options.category is not None:
         there = ", ".join(sorted(rows[SENDER].astype(str).unique())) or "none"
         rows = rows[rows[SENDER] == options.category]
@@ -55,6 +54,15 @@ def read_log(options: argparse.Namespace, prog: str) -> tuple[pd.DataFrame, list
         raise AnalysisError(f"{name} has no message: no robot sent one")
     combination = [name for name in label_columns(rows, metadata) if name != "run" and rows[name].nunique() > 1]
     return rows, combination
+
+
+def check_are_logs(files: Sequence[str]) -> None:
+    """Raise AnalysisError for the first file that is none: rows of others could be joined with those of logs."""
+    for file in files:
+        if "outcome" not in row_batches(Path(file)).schema.names:
+            raise AnalysisError(
+                f"{file} is no message log (it has no column outcome): set message_log in the configuration"
+            )
 
 
 def with_bins(tried: pd.DataFrame, bin_mm: float) -> pd.DataFrame:
