@@ -253,7 +253,7 @@ def test_failure_of_the_program_is_told(hosted: Path, scene: Path) -> None:
         wait_for(lambda: watcher.status["problem"])
         assert "robot #1" in watcher.status["problem"]
         assert not watcher.status["playing"]
-        assert live.has_failed
+        assert isinstance(live.failure, pogosim.ProgramFailedError)
         watcher.do("reset")
         wait_for(lambda: watcher.last.time_s == 0.0)
         live.end()
@@ -270,7 +270,40 @@ def test_closed_simulation_is_told(sim: pogosim.Simulation) -> None:
     live.end()
 
 
-def test_simulation_that_nobody_keeps_is_collected(hosted: Path, scene: Path) -> None:
+def test_reset_that_fails_is_told_and_can_be_tried_again(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    file = tmp_path / "rows.feather"
+    with pogosim.Simulation(hosted, scene, data_file=file) as simulation:
+        live = LiveRun(simulation)
+        watcher = Watcher(live)
+        moved = file.rename(tmp_path / "moved")
+        file.mkdir()
+        watcher.do("reset")
+        wait_for(lambda: "rows.feather" in watcher.status["problem"])
+        assert not watcher.status["closed"]
+        assert isinstance(live.failure, pogosim.ConfigurationError)
+        watcher.do("play")
+        time.sleep(0.1)
+        file.rmdir()
+        watcher.do("reset", seed=5)
+        wait_for(lambda: watcher.of_kind("settings")[-1]["seed"] == 5 and watcher.pictures)
+        assert watcher.status["problem"] == ""
+        assert live.failure is None
+        assert moved.is_file()
+        live.end()
+
+
+def test_error_of_ours_is_told_and_ends_the_thread(
+    live: LiveRun, sim: pogosim.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    watcher = Watcher(live)
+    monkeypatch.setattr(live, "_look", lambda _: 1 / 0)
+    sim.step(1)
+    wait_for(lambda: not live.is_alive)
+    assert "internal error: ZeroDivisionError" in watcher.status["problem"]
+    assert watcher.status["closed"]
+
+
+def test_simulation_that_is_not_kept_is_collected(hosted: Path, scene: Path) -> None:
     simulation = pogosim.Simulation(hosted, scene)
     live = LiveRun(simulation)
     live.play()

@@ -79,10 +79,13 @@ class Cell(Client):
     def __init__(self, view: Any, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
         super().__init__()
         self.view, self.name = view, name
+        others = view.send
 
         def send(content: dict[str, Any], buffers: list[bytes] | None = None) -> None:
             if content["to"] == name:
                 self.take(buffers[0] if buffers else content["message"])
+            else:
+                others(content, buffers)
 
         monkeypatch.setattr(view, "send", send)
         self.send({"do": "join"})
@@ -118,12 +121,43 @@ def test_view_plays_and_pauses_from_python(sim: pogosim.Simulation) -> None:
     at = sim.steps
     assert sim.step(5) == 5
     assert sim.steps == at + 5
-    for speed in (0.0, -1.0, float("nan")):
-        with pytest.raises(pogosim.SimulationError, match="speed: expected a number above 0"):
-            view.play(speed)
+    for speed in (0.0, -1.0, float("nan"), "fast"):
+        with pytest.raises(pogosim.ConfigurationError, match="speed: expected a number above 0"):
+            view.play(speed)  # type: ignore[arg-type]
     for height in (5, 10_000, "tall"):
         with pytest.raises(pogosim.ConfigurationError, match="height"):
             sim.view(height_px=height)  # type: ignore[arg-type]
+
+
+def test_still_picture_is_drawn_once_for_each_pause(sim: pogosim.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    view = sim.view()
+    drawn: list[int] = []
+
+    class Handle:
+        def update(self, _: Any) -> None:
+            drawn.append(sim.steps)
+
+    monkeypatch.setattr(view, "_stills", [Handle()])
+    cells = [Cell(view, name, monkeypatch) for name in "ab"]
+    wait_for(lambda: all(cell.status.get("viewers") == 2 for cell in cells[:1]))
+    assert drawn == [0]
+    view.play()
+    wait_for(lambda: sim.steps > 3)
+    view.pause()
+    assert drawn == [0, sim.steps]
+
+
+def test_run_pauses_when_its_last_view_is_gone(sim: pogosim.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    view = sim.view()
+    cell = Cell(view, "one", monkeypatch)
+    view.play()
+    wait_for(lambda: sim.steps > 3)
+    cell.send({"do": "leave"})
+    wait_for(lambda: not view._live.status.is_playing)
+    sim.close()
+    wait_for(lambda: not view._live.is_alive)
+    with pytest.raises(pogosim.SimulationError, match="closed"):
+        sim.view()
 
 
 def test_missing_package_is_named(hosted: Path, scene: Path) -> None:

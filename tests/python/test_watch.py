@@ -23,7 +23,8 @@ import numpy as np
 import pytest
 from in_process import pogosim, refusal
 from live_client import Client, wait_for
-from pogosim.watch.server import MOST_VIEWERS, Tokens
+from pogosim.utils import load_dataframe
+from pogosim.watch.server import MOST_CONNECTIONS, MOST_VIEWERS, Tokens
 from running import ROOT, write_scene
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
@@ -123,6 +124,23 @@ def opened(address: str, **options: Any) -> ClientConnection:
     return connection
 
 
+@pytest.fixture(scope="module")
+def server(hosted: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    folder = tmp_path_factory.mktemp("shared")
+    scene = write_scene(folder, SETTINGS)
+    with serving(folder, str(hosted), "-c", str(scene), "--port", "0", "--pause") as own:
+        yield own
+
+
+@pytest.fixture
+def shared(server: Served) -> Iterator[Served]:
+    """One that tests share which leave it as it is."""
+    yield server
+    for viewer in server.viewers:
+        viewer.close()
+    server.viewers.clear()
+
+
 class Viewer(Client):
     """A viewer by a websocket, which answers at once."""
 
@@ -148,9 +166,9 @@ class Viewer(Client):
         self.thread.join(10)
 
 
-def test_page_is_served_to_those_with_a_token(served: Served) -> None:
-    for token in (served.steer, served.look):
-        status, page, headers = served.get(f"/?token={token}")
+def test_page_is_served_to_those_with_a_token(shared: Served) -> None:
+    for token in (shared.steer, shared.look):
+        status, page, headers = shared.get(f"/?token={token}")
         assert status == 200
         assert headers["content-type"] == "text/html; charset=utf-8"
         assert page.startswith("<!DOCTYPE html>")
@@ -173,35 +191,35 @@ WRONG_PATHS = (
 
 
 @pytest.mark.parametrize("path", WRONG_PATHS)
-def test_nothing_is_served_without_the_token(served: Served, path: str) -> None:
-    status, text, _ = served.get(path.format(steer=served.steer))
+def test_nothing_is_served_without_the_token(shared: Served, path: str) -> None:
+    status, text, _ = shared.get(path.format(steer=shared.steer))
     assert (status, text) == (403, "The address lacks the token that pogosim watch has printed.\n")
 
 
-def test_there_is_nothing_else(served: Served) -> None:
-    for path in (f"/etc/passwd?token={served.steer}", f"/../page?token={served.steer}", "/favicon.ico"):
-        assert served.get(path)[0] == 404
+def test_there_is_nothing_else(shared: Served) -> None:
+    for path in (f"/etc/passwd?token={shared.steer}", f"/../page?token={shared.steer}", "/favicon.ico"):
+        assert shared.get(path)[0] == 404
 
 
-def test_sockets_need_a_token_and_a_page_of_this_server(served: Served) -> None:
-    own, through_tunnel = f"127.0.0.1:{served.port}", "localhost:9000"
+def test_sockets_need_a_token_and_a_page_of_this_server(shared: Served) -> None:
+    own, through_tunnel = f"127.0.0.1:{shared.port}", "localhost:9000"
     good: list[dict[str, str]] = [{}, {"Origin": f"http://{own}"}]
     bad = [{"Origin": "http://evil.example"}, {"Origin": "null"}, {"Origin": f"http://{own}.evil.example"}]
     for headers in good:
-        opened(served.address(), additional_headers=headers).close()
+        opened(shared.address(), additional_headers=headers).close()
     for headers in bad:
         with pytest.raises(InvalidStatus) as refused:
-            opened(served.address(), additional_headers=headers)
+            opened(shared.address(), additional_headers=headers)
         assert refused.value.response.status_code == 403
-    for token in ("wrong", served.steer[:-1], served.look + served.steer):
+    for token in ("wrong", shared.steer[:-1], shared.look + shared.steer):
         with pytest.raises(InvalidStatus):
-            opened(served.address(token))
+            opened(shared.address(token))
     request = (
-        f"GET /live?token={served.steer} HTTP/1.1\r\nHost: {through_tunnel}\r\nOrigin: http://{through_tunnel}\r\n"
+        f"GET /live?token={shared.steer} HTTP/1.1\r\nHost: {through_tunnel}\r\nOrigin: http://{through_tunnel}\r\n"
         "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
     )
-    with socket.create_connection(("127.0.0.1", served.port), timeout=20) as raw:
+    with socket.create_connection(("127.0.0.1", shared.port), timeout=20) as raw:
         raw.sendall(request.encode())
         assert raw.recv(4096).startswith(b"HTTP/1.1 101")
 
@@ -234,7 +252,7 @@ def test_viewers_steer_one_at_a_time_and_look_on(served: Served) -> None:
     assert "is complete" in served.end()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_data_file_has_the_bytes_of_a_run_without_viewers(
     number: int, hosted: Path, scene: Path, tmp_path: Path
 ) -> None:
@@ -316,8 +334,8 @@ def nonsense(chance: random.Random, text: str) -> str | bytes:
     return "".join(letters)
 
 
-def test_message_that_is_too_long_ends_its_connection_only(served: Served) -> None:
-    own, other = opened(served.address()), served.view(served.look)
+def test_message_that_is_too_long_ends_its_connection_only(shared: Served) -> None:
+    own, other = opened(shared.address()), shared.view(shared.look)
     with contextlib.closing(own), pytest.raises(ConnectionClosed) as ended:
         own.send("x" * 1_000_000)
         while True:
@@ -326,6 +344,90 @@ def test_message_that_is_too_long_ends_its_connection_only(served: Served) -> No
     assert ended.value.rcvd.code == 1009
     wait_for(lambda: other.status["viewers"] == 1)
     other.close()
+
+
+def test_addresses_that_are_none_are_refused_without_a_word(served: Served) -> None:
+    for path in ("//[", "http://[::1/", "//[/live"):
+        assert served.get(path)[0] in (403, 404)
+    with pytest.raises(InvalidStatus) as refused:
+        opened(served.address(), additional_headers={"Origin": "http://["})
+    assert refused.value.response.status_code == 403
+    assert "Traceback" not in served.end()
+
+
+def test_connections_that_say_nothing_leave_room_for_others(served: Served) -> None:
+    idle = []
+    for _ in range(2 * MOST_CONNECTIONS):
+        idle.append(socket.create_connection(("127.0.0.1", served.port), timeout=20))
+        with contextlib.suppress(OSError):
+            idle[-1].sendall(b"GET / HTTP/1.1\r\n")
+    files = Path(f"/proc/{served.process.pid}/fd")
+    if files.is_dir():
+        wait_for(lambda: len(list(files.iterdir())) < MOST_CONNECTIONS + 60)
+    for own in idle:
+        own.close()
+    served.view().do("step", steps=1)
+    assert "Traceback" not in served.end()
+
+
+def test_reset_that_fails_is_said_at_the_end(served: Served) -> None:
+    viewer = served.view()
+    file = served.folder / "data.feather"
+    file.rename(served.folder / "moved")
+    file.mkdir()
+    viewer.do("reset")
+    wait_for(lambda: viewer.status["problem"])
+    served.process.send_signal(signal.SIGTERM)
+    said, _ = served.process.communicate(timeout=30)
+    assert served.process.returncode == 2
+    assert "is complete" not in said
+    assert "data.feather" in said.splitlines()[-1]
+
+
+def test_reader_of_lines_that_goes_away_does_not_end_the_run(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    command = [*COMMAND, str(hosted), "-c", str(scene), "--port", "0", "--close", "--speed", "max"]
+    done = subprocess.run(
+        [
+            "bash",
+            "-c",
+            'set -o pipefail; "$@" 2>errors | head -1 >/dev/null',
+            "bash",
+            *command,
+            "--set",
+            "simulation_time=1",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "POGOSIM_DIR": str(ROOT)},
+        timeout=60,
+        check=False,
+    )
+    errors = (tmp_path / "errors").read_text()
+    assert "Traceback" not in errors
+    assert done.returncode in (0, 2)
+    if done.returncode:
+        assert "cannot write to the standard output: Broken pipe" in errors
+    load_dataframe(tmp_path / "data.feather")
+
+
+def test_second_signal_ends_a_program_that_does_not_return(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    hanging = (
+        "--set",
+        "parameters.fail_at_tick=3",
+        "--set",
+        "parameters.failure=loop",
+        "--set",
+        "user_code_timeout=600",
+    )
+    with serving(tmp_path, str(hosted), "-c", str(scene), "--port", "0", *hanging) as served:
+        time.sleep(1.0)
+        served.process.send_signal(signal.SIGINT)
+        assert served.process.stdout is not None
+        told = next(line for line in served.process.stdout if "waiting for the robots' program" in line)
+        assert "Ctrl-C ends it at once" in told
+        served.process.send_signal(signal.SIGINT)
+        said, _ = served.process.communicate(timeout=30)
+        assert served.process.returncode == 130
+        assert "pogosim recover" in said
 
 
 def test_flood_of_messages_is_served_in_turn(served: Served) -> None:
@@ -441,6 +543,7 @@ REFUSED = (
     (["{hosted}", "-c", "{scene}", "--address", "192.0.2.1"], "cannot listen on ports 8642 to 8691 of 192.0.2.1"),
     (["{hosted}", "-c", "{scene}", "--port", "70000"], "'70000' is not a whole number from 0 to 65535"),
     (["{hosted}", "-c", "{scene}", "--speed", "-1"], "-1 is not above 0"),
+    (["{hosted}", "-c", "{scene}", "--speed", "1e308"], "1e308 is above 1e+06"),
     (["{hosted}", "-c", "{scene}", "--set", "nothing"], "expected KEY=VALUE"),
     (["{hosted}", "-c", "{scene}", "--set", "objects.robots.nb=-3"], "objects.robots.nb"),
     (["{scene}", "-c", "{scene}"], "has no shared object scene.yaml.so beside it"),
@@ -464,7 +567,7 @@ def test_port_that_is_taken_is_said(hosted: Path, scene: Path, tmp_path: Path) -
     assert f"cannot listen on port {port} of 127.0.0.1: Address already in use" in line
 
 
-def test_listens_nowhere_else(served: Served) -> None:
+def test_listens_nowhere_else(shared: Served) -> None:
     """Other addresses of this machine are not answered, which all of 127.0.0.0/8 are on Linux."""
     with pytest.raises(OSError):
-        socket.create_connection(("127.0.0.2", served.port), timeout=5)
+        socket.create_connection(("127.0.0.2", shared.port), timeout=5)

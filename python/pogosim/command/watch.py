@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import contextlib
 import functools
 import ipaddress
-import logging
 import math
-import signal
 import socket
-import sys
 import webbrowser
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,13 +26,14 @@ from pogosim.extensions import let_find_models
 from pogosim.extras import installing
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
-from pogosim.lines import printable, say
-from pogosim.simulation.errors import SimulationError
+from pogosim.lines import printable
+from pogosim.simulation.errors import ProgramFailedError, SimulationError
 
 if TYPE_CHECKING:
     from pogosim.simulation import Simulation
     from pogosim.watch.live import LiveRun
     from pogosim.watch.server import WatchServer
+    from pogosim.watch.terminal import Signals
 
 EPILOG = """PROGRAM is the folder of a project, a .c or .cpp file, a program or its shared object (.so), or a firmware
 (.elf); without it, the configuration says what drives the robots. The page at the first address may steer the run, one
@@ -49,6 +46,8 @@ is complete then."""
 FIRST_PORT = 8642
 MOST_PORTS = 50  # that are tried
 MOST_SEED = 2**32 - 1
+MOST_SPEED = 1e6
+LOOK_S = 0.1  # from one look at whether it ends to the next
 PROGRAM_FAILED = 3  # as a run of the program says it
 
 
@@ -58,7 +57,11 @@ class WatchError(ToolError):
 
 def speed(text: str) -> float:
     """Return a speed: a positive number, or "max"."""
-    return math.inf if text == "max" else positive(text)
+    if text == "max":
+        return math.inf
+    if (value := positive(text)) > MOST_SPEED:
+        raise argparse.ArgumentTypeError(f"{text} is above {MOST_SPEED:g}; max goes as fast as it can")
+    return value
 
 
 def parser(prog: str) -> Parser:
@@ -160,59 +163,13 @@ def data_file_in(configuration: Path, settings: dict[str, Any]) -> str:
     """Return the data file that a configuration names, as a run of the program would write it."""
     from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml  # takes a while
 
-    if isinstance(settings.get("data_filename"), str):
+    if "data_filename" in settings:
         return str(settings["data_filename"])
     try:
         values = parse_yaml(configuration.read_text(encoding="utf-8"))
     except (*WRONG_VALUES, OSError):
         return "data.feather"  # the simulator says what is wrong
-    named = values.get("data_filename") if isinstance(values, dict) else None
-    return named if isinstance(named, str) else "data.feather"
-
-
-class Told(logging.Handler):
-    """Prints what robots and the simulator say, and tells it to viewers."""
-
-    def __init__(self) -> None:
-        """Keep lines until there is a live run."""
-        super().__init__()
-        self._live: LiveRun | None = None
-        self._kept: list[str] = []
-
-    def tell(self, live: LiveRun | None) -> None:
-        """Tell lines to the viewers of a run from now on, and those that were kept; None: to none any more."""
-        self._live = live
-        if live is not None:
-            for line in self._kept:
-                live.say(line)
-        self._kept.clear()
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Take a line."""
-        text = printable(record.getMessage())
-        is_robot = record.name == "pogosim.robots"
-        line = text if is_robot or record.levelno < logging.WARNING else f"{record.levelname.lower()}: {text}"
-        print(line, file=sys.stdout if is_robot else sys.stderr, flush=True)
-        if self._live is not None:
-            self._live.say(line)
-        else:
-            self._kept.append(line)
-
-
-@contextlib.contextmanager
-def told() -> Iterator[Told]:
-    """Print lines of the logger "pogosim" until the end of the block."""
-    handler = Told()
-    logger = logging.getLogger("pogosim")
-    before = logger.level, logger.propagate
-    logger.addHandler(handler)
-    logger.setLevel(logging.INFO)
-    logger.propagate = False
-    try:
-        yield handler
-    finally:
-        logger.removeHandler(handler)
-        logger.level, logger.propagate = before
+    return str(values.get("data_filename", "data.feather")) if isinstance(values, dict) else "data.feather"
 
 
 def watch(options: argparse.Namespace, prog: str) -> int:
@@ -226,58 +183,84 @@ def watch(options: argparse.Namespace, prog: str) -> int:
     from pogosim.simulation import Simulation
     from pogosim.watch.live import LiveRun
     from pogosim.watch.page import watch_page
+    from pogosim.watch.terminal import Signals, told
 
     configuration = configuration_for(options)
     program = program_for(options.program, find_installation())
     let_find_models(functools.partial(warn, prog))
     settings = dict(options.settings)
-    with listening(options.address, options.port) as own, told() as handler:
-        data_file = data_file_in(configuration, settings)
-        try:
-            simulation = Simulation(program, configuration, seed=options.seed, set=settings, data_file=data_file)
-        except SimulationError as error:
-            raise WatchError(str(error)) from None
-        with simulation:
-            live = LiveRun(simulation, one_steers=True)
-            handler.tell(live)
+    signals = Signals(prog)
+    try:
+        with listening(options.address, options.port) as own, told() as handler:
+            data_file = data_file_in(configuration, settings)
             try:
+                simulation = Simulation(program, configuration, seed=options.seed, set=settings, data_file=data_file)
+            except SimulationError as error:
+                raise WatchError(str(error)) from None
+            live = LiveRun(simulation, one_steers=True)
+            try:
+                handler.tell(live)
                 server = WatchServer(live, watch_page(f"{simulation.configuration.name} \u2013 Pogosim"))
-                asyncio.run(serve(options, simulation, live, server, own))
+                asyncio.run(serve(options, simulation, live, server, own, signals))
             finally:
-                handler.tell(None)
-                live.end()
-        if simulation.data_file.exists():
-            say(f"{simulation.data_file} is complete.")
-    if live.has_failed:
-        complain(prog, live.status.problem)
-        return PROGRAM_FAILED
-    return 0
+                with signals.ending():
+                    live.end()
+                    is_open = simulation._current.run is not None
+                    closed(simulation)
+        return ended(simulation, live, prog, is_open)
+    finally:
+        signals.restore()
+
+
+def closed(simulation: Simulation) -> None:
+    """Complete the data file.
+
+    Raises:
+        WatchError: It cannot be written.
+    """
+    try:
+        simulation.close()
+    except SimulationError as error:
+        raise WatchError(str(error)) from None
+
+
+def ended(simulation: Simulation, live: LiveRun, prog: str, is_open: bool) -> int:
+    """Say how it has ended; `is_open`: no reset has failed. Returns the exit code."""
+    from pogosim.watch.terminal import print_out
+
+    if is_open and simulation.data_file.is_file():
+        print_out(f"{simulation.data_file} is complete.")
+    if live.failure is None:
+        return 0
+    complain(prog, live.status.problem)
+    return PROGRAM_FAILED if isinstance(live.failure, ProgramFailedError) else WatchError.exit_code
 
 
 async def serve(
-    options: argparse.Namespace, simulation: Simulation, live: LiveRun, server: WatchServer, own: socket.socket
+    options: argparse.Namespace,
+    simulation: Simulation,
+    live: LiveRun,
+    server: WatchServer,
+    own: socket.socket,
+    signals: Signals,
 ) -> None:
     """Serve until a signal, or the end of the run if that is wanted."""
-    is_ended = asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, is_ended.set)
     from pogosim.watch.serving import address_of
+    from pogosim.watch.terminal import print_out
 
     async with server.serving(own):
         steering = address_of(own, server.tokens.steer)
-        say(f"To steer:   {steering}")
-        say(f"To look on: {address_of(own, server.tokens.look)}")
+        print_out(f"To steer:   {steering}", f"To look on: {address_of(own, server.tokens.look)}")
         if not ipaddress.ip_address(own.getsockname()[0]).is_loopback:
-            say("Other machines can connect. What is sent is not encrypted: an ssh tunnel does that.")
-        sys.stdout.flush()
+            print_out("Other machines can connect. What is sent is not encrypted: an ssh tunnel does that.")
         if options.open:
             webbrowser.open(steering)
-        live.play(options.speed) if not options.pause else live.set_speed(options.speed)
-        while not is_ended.is_set():
-            with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(is_ended.wait(), 0.2)
-            if options.close and (simulation.is_over or live.has_failed):
+        live.set_speed(options.speed)
+        if not options.pause:
+            live.play()
+        while not signals.is_wanted and live.is_alive:
+            await asyncio.sleep(LOOK_S)
+            if options.close and (simulation.is_over or live.failure is not None):
                 break
 
 

@@ -355,6 +355,8 @@ class Simulation:
             finally:
                 self._current.clean_up()
                 self._finish.cancel()
+                if self._live is not None:
+                    self._live.wake()
 
     def discard(self) -> None:
         """Close a run that was made in vain: the archive of flash memory stays as it is."""
@@ -674,10 +676,10 @@ class Simulation:
             height_px: 200 to 4000.
 
         Raises:
-            SimulationError: The Python package anywidget is not installed.
+            SimulationError: The Python package anywidget is not installed, or the simulation is closed.
             ConfigurationError: The height is out of range.
         """
-        check_process(self._current.process)
+        _ = self._run  # raises if it is closed
         from pogosim.watch.notebook import RunView
 
         return RunView(self, given.integer("height_px", height_px, 200, 4000))

@@ -7,6 +7,7 @@ ask for is done by it, between two steps, so a run gives the same bytes with vie
 from __future__ import annotations
 
 import contextlib
+import logging
 import math
 import queue
 import threading
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from pogosim.lines import printable_lines
-from pogosim.simulation import Simulation, SimulationError
+from pogosim.simulation import ProgramFailedError, Simulation, SimulationError
 from pogosim.simulation.library import check, library
 from pogosim.watch.commands import Command, RefusedError
 from pogosim.watch.frames import light_message
@@ -35,8 +36,11 @@ DETAILS_S = 0.2  # from one telling of details to the next
 BUSY_SHARE = 0.8  # of a period, in which steps are made
 MOST_LINES = 100  # that are told at a time, and to a new viewer
 MOST_CHARACTERS_OF_LINE = 500
+CLOSED = "the simulation is closed"
 LOOKS_ON = "this page looks on: only one with the address for steering can do this"
 MOST_BEHIND_S = 0.25  # of real time: what is later is given up
+
+logger = logging.getLogger("pogosim")
 
 
 @dataclass(frozen=True)
@@ -96,6 +100,7 @@ class LiveRun:
 
     Attributes:
         status: What all viewers are told.
+        failure: Why the run, or its last reset, has failed; None: it has not.
         one_steers: Whether only one viewer may steer at a time; else all that may at all.
     """
 
@@ -118,6 +123,7 @@ class LiveRun:
         self._last_said: deque[str] = deque(maxlen=MOST_LINES)
         self._is_ended = False
         self.status = Status()
+        self.failure: Exception | None = None
         self.one_steers = one_steers
         self.steerer: Viewer | None = None
         self._thread = threading.Thread(target=self._go, name="pogosim-live", daemon=True)
@@ -146,6 +152,8 @@ class LiveRun:
                 self._viewers.remove(viewer)
             if self.steerer is viewer:
                 self.steerer = next((own for own in self._viewers if own.may_steer), None)
+            if not self._viewers and not self.one_steers:
+                self._set(is_playing=False)  # a cell that was run again has a run of its own
             self._tell_status()
 
         self.request(remove)
@@ -166,16 +174,22 @@ class LiveRun:
 
     def play(self, speed: float | None = None) -> None:
         """Go on; `speed`: times real time, None: that of before."""
-        self.request(lambda _: self._set(is_playing=True, **({} if speed is None else {"speed": speed})))
+        if speed is not None:
+            self.set_speed(speed)
+        self.request(lambda simulation: self._set(is_playing=not simulation.is_over))
 
     def set_speed(self, speed: float) -> None:
         """Let it go at another speed, times real time, once it plays."""
         self.request(lambda _: self._set(speed=speed))
 
     @property
-    def has_failed(self) -> bool:
-        """Whether the robots' program has failed."""
-        return bool(self.status.problem)
+    def is_alive(self) -> bool:
+        """Whether the thread of this run goes on: until the simulation is closed, or `end`."""
+        return self._thread.is_alive()
+
+    def wake(self) -> None:
+        """Let the thread see now how the simulation is: closed, perhaps."""
+        self._wake.set()
 
     def pause(self) -> None:
         """Stop after the present step, and wait until that is done."""
@@ -202,9 +216,8 @@ class LiveRun:
         next_s = time.perf_counter()
         while not self._is_ended:
             simulation = self._simulation()
-            if simulation is None:
+            if simulation is None or not self._turn(simulation):
                 break
-            self._turn(simulation)
             is_idle = not self._viewers and not self.status.is_playing
             del simulation
             now = time.perf_counter()
@@ -213,7 +226,8 @@ class LiveRun:
             self._wake.clear()
         self._set(is_playing=False, is_closed=True)
 
-    def _turn(self, simulation: Simulation) -> None:
+    def _turn(self, simulation: Simulation) -> bool:
+        """Do what is due; returns whether there is more to come."""
         try:
             self._follow(simulation)
             self._do_requests(simulation)
@@ -222,24 +236,34 @@ class LiveRun:
                 self._advance(simulation)
             self._show(simulation)
         except SimulationError as error:
-            # Closed by another thread, perhaps only for a moment: by a reset that failed.
-            self._stage = None
-            self._set(is_playing=False, problem=printable_lines(str(error)))
-            self._do_requests(simulation)
+            if self._stage is None or self._stage.run is simulation._current.run:
+                self._fail(error)
+            # else closed or reset by another thread meanwhile: the next turn sees how it is
+        except Exception as error:  # viewers and the terminal are told, in place of a view that stands still
+            logger.exception("the thread of a live run has failed")
+            self._fail(error)
+            return False
+        return not simulation._is_closed
+
+    def _fail(self, error: Exception) -> None:
+        """Stop, and tell why."""
+        self.failure = error
+        told = str(error) if isinstance(error, SimulationError) else f"internal error: {error!r}"
+        self._set(is_playing=False, problem=printable_lines(told))
 
     def _follow(self, simulation: Simulation) -> None:
         """Set the stage for a run that is new, perhaps by a reset."""
         run = simulation._current.run
-        if run is None or simulation._is_closed:
-            if self._stage is not None or not self.status.is_closed:
-                self._stage = None
-                self._set(is_playing=False, is_closed=True)
+        if run is None or simulation._is_closed:  # closed, or the last reset has failed
+            self._stage = None
+            self._set(is_playing=False, is_closed=simulation._is_closed)
             return
         if self._stage is not None and self._stage.run is run:
             return
         self._stage = Stage(simulation)
         self._columns = column_names(simulation)
         self._shown_step, self._light, self._links = -1, None, None
+        self.failure = None
         self._set(is_over=simulation.is_over, is_closed=False, problem="")
         for viewer in self._viewers:
             self._greet(viewer, simulation)
@@ -272,7 +296,7 @@ class LiveRun:
         try:
             made = simulation.step(steps) if steps else 0
         except SimulationError as error:
-            self._set(is_playing=False, is_over=simulation.is_over, problem=printable_lines(str(error)))
+            self._fail(error)
             return
         self._pace.made(made, time.perf_counter() - began_s)
 
@@ -342,7 +366,9 @@ class LiveRun:
             except (RefusedError, SimulationError) as error:
                 viewer.tell({"kind": "refused", "message": printable_lines(str(error))})
 
-        if command.name == "shown":  # the next turn is soon enough
+        if not self.is_alive:
+            viewer.tell({"kind": "refused", "message": CLOSED})
+        elif command.name == "shown":  # the next turn is soon enough
             self._requests.put(act)
         else:
             self.request(act)
@@ -355,7 +381,7 @@ class LiveRun:
         if self.one_steers and self.steerer is not viewer:
             raise RefusedError("another viewer steers: press 'steer' to take over")
         if self.status.is_closed:
-            raise RefusedError("the simulation is closed")
+            raise RefusedError(CLOSED)
 
     def _do_shown(self, _: Simulation, viewer: Viewer, frame: int) -> None:
         viewer.was_shown(frame)
@@ -380,14 +406,17 @@ class LiveRun:
     def _do_play(self, simulation: Simulation, _: Viewer) -> None:
         if simulation.is_over:
             raise RefusedError("the run is over: reset it to play it again")
-        self._set(is_playing=True, problem="")
+        self._set(is_playing=True)
 
     def _do_pause(self, _: Simulation, __: Viewer) -> None:
         self._set(is_playing=False)
 
     def _do_step(self, simulation: Simulation, _: Viewer, steps: int) -> None:
         self._set(is_playing=False)
-        simulation.step(steps)
+        try:
+            simulation.step(steps)
+        except ProgramFailedError as error:
+            self._fail(error)
 
     def _do_speed(self, _: Simulation, __: Viewer, value: float | None) -> None:
         self._set(speed=math.inf if value is None else float(value))
@@ -419,7 +448,10 @@ class LiveRun:
 
     def _do_reset(self, simulation: Simulation, _: Viewer, seed: int | None) -> None:
         self._set(is_playing=False)
-        simulation.reset(seed)
+        try:
+            simulation.reset(seed)
+        except SimulationError as error:
+            self._fail(error)
 
     # ---- Telling
 

@@ -14,6 +14,8 @@ from typing import Any
 from pogosim.extras import installing
 from pogosim.pages import data_uri
 from pogosim.simulation import Simulation, SimulationError
+from pogosim.simulation.arrays import RunState
+from pogosim.simulation.errors import given
 from pogosim.view import assets
 from pogosim.watch.commands import RefusedError, read_command
 from pogosim.watch.page import LIVE_PROGRAM, live_elements
@@ -61,6 +63,7 @@ class RunView(anywidget.AnyWidget):
         self._live = simulation._live_run
         self._viewers: dict[str, Viewer] = {}
         self._stills: list[DisplayHandle] = []
+        self._seen: tuple[RunState, int] | None = None  # run and step of the still pictures
         super().__init__(height=height, still=f"pogosim-still-{secrets.token_hex(8)}")
         self.on_msg(self._hear)
 
@@ -68,11 +71,12 @@ class RunView(anywidget.AnyWidget):
         """Go on while cells return; `speed`: times real time, above 0, infinite: as fast as it goes; None: as before.
 
         Raises:
-            SimulationError: It is no speed.
+            ConfigurationError: It is no speed.
         """
-        if speed is not None and not speed > 0.0:
-            raise SimulationError(f"speed: expected a number above 0, found {speed!r}")
-        self._live.play(speed)
+        wanted = None if speed is None else given.number("speed", speed, "a number above 0")
+        if wanted is not None and not wanted > 0.0:
+            raise given.refused("speed", "a number above 0", speed)
+        self._live.play(wanted)
 
     def pause(self) -> None:
         """Stop, and return when it stands still."""
@@ -83,7 +87,7 @@ class RunView(anywidget.AnyWidget):
         if not isinstance(content, Mapping) or not isinstance(content.get("view"), str):
             return
         name, message = content["view"][:100], content.get("message")
-        if message == {"do": "join"} and len(self._viewers) < MOST_VIEWS:
+        if message == {"do": "join"} and name not in self._viewers and len(self._viewers) < MOST_VIEWS:
             self._viewers[name] = Viewer(functools.partial(self._tell_view, name), may_steer=True, stall_s=STALL_S)
             self._live.join(self._viewers[name])
             return
@@ -104,8 +108,17 @@ class RunView(anywidget.AnyWidget):
             self.send({"to": name}, [message])
             return
         self.send({"to": name, "message": message})
-        is_at_rest = message["kind"] == "status" and not message["playing"] and not message["closed"]
-        if is_at_rest and not self.simulation._current.lock.locked():
+        if message["kind"] == "status" and not message["playing"]:
+            self._keep_still()
+
+    def _keep_still(self) -> None:
+        """Let saved notebooks keep the picture of now, unless they have it already."""
+        current = self.simulation._current
+        if current.run is None or current.lock.locked():
+            return
+        seen = (current.run, self.simulation.steps)
+        if seen != self._seen:
+            self._seen = seen
             for handle in self._stills:
                 handle.update(self._still())  # type: ignore[no-untyped-call]
 

@@ -28,6 +28,9 @@ from pogosim.watch.live import LiveRun
 from pogosim.watch.viewer import Viewer
 
 MOST_VIEWERS = 200
+MOST_CONNECTIONS = 300  # of viewers, and of what has not said yet what it wants
+MOST_UNREAD_BYTES = 8_000_000  # that a connection does not take, answers to its pings among them
+OPEN_S = 5.0  # in which a connection says what it wants
 MOST_WAITING = 400  # messages for a viewer that does not take them
 MOST_BACKLOG = 200  # requests that the run has not done yet, before viewers have to wait
 TOKEN_BYTES = 16
@@ -54,6 +57,30 @@ class Tokens:
         return may_steer if may_steer or may_look else None
 
 
+class Bounded(ServerConnection):
+    """A connection of a server that has so many at most, and keeps so many bytes for each."""
+
+    open_now = 0  # of all servers of this process
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Begin, or end at once if there are too many."""
+        Bounded.open_now += 1
+        super().connection_made(transport)
+        if Bounded.open_now > MOST_CONNECTIONS:
+            self.transport.abort()
+
+    def data_received(self, data: bytes) -> None:
+        """Take bytes; a connection that does not take the answers ends."""
+        super().data_received(data)
+        if self.transport.get_write_buffer_size() > MOST_UNREAD_BYTES:
+            self.transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End."""
+        Bounded.open_now -= 1
+        super().connection_lost(exc)
+
+
 class WatchServer:
     """Serves a live run on one address.
 
@@ -75,6 +102,8 @@ class WatchServer:
             self._view,
             sock=sockets,
             process_request=self._answer,
+            create_connection=Bounded,
+            open_timeout=OPEN_S,
             max_size=4 * MOST_CHARACTERS,
             max_queue=16,
             compression="deflate",
@@ -88,13 +117,13 @@ class WatchServer:
 
     def _answer(self, _: ServerConnection, request: Request) -> Response | None:
         """Answer a request for the page; None: a websocket is let in."""
-        path = urlsplit(request.path)
-        rights = self.tokens.rights(token_in(path.query))
-        if path.path not in ("/", "/live"):
+        path, query = parts_of(request.path)
+        rights = self.tokens.rights(token_in(query))
+        if path not in ("/", "/live"):
             return answer(HTTPStatus.NOT_FOUND, "There is nothing here.")
         if rights is None:
             return answer(HTTPStatus.FORBIDDEN, "The address lacks the token that pogosim watch has printed.")
-        if path.path == "/":
+        if path == "/":
             return answer(HTTPStatus.OK, self._page, "text/html; charset=utf-8")
         if not is_of_same_origin(request.headers):
             return answer(HTTPStatus.FORBIDDEN, "The page is of another server.")
@@ -109,7 +138,7 @@ class WatchServer:
         loop = asyncio.get_running_loop()
         waiting: asyncio.Queue[dict[str, Any] | bytes] = asyncio.Queue(MOST_WAITING)
         assert connection.request is not None
-        may_steer = self.tokens.rights(token_in(urlsplit(connection.request.path).query)) is True
+        may_steer = self.tokens.rights(token_in(parts_of(connection.request.path)[1])) is True
 
         def put(message: dict[str, Any] | bytes) -> None:
             if waiting.full():
@@ -156,6 +185,15 @@ async def send_all(connection: ServerConnection, waiting: asyncio.Queue[dict[str
             await connection.send(message if is_bytes else json.dumps(message, allow_nan=False, separators=(",", ":")))
 
 
+def parts_of(address: str) -> tuple[str, str]:
+    """Return the path and the query of an address; empty if it is none."""
+    try:
+        parts = urlsplit(address)
+    except ValueError:
+        return "", ""
+    return parts.path, parts.query
+
+
 def token_in(query: str) -> str:
     """Return the token of an address; empty if it has none."""
     found = parse_qs(query).get("token", [""])
@@ -170,7 +208,10 @@ def is_of_same_origin(headers: Headers) -> bool:
         return True
     if len(origins) != 1 or len(hosts) != 1:
         return False
-    return urlsplit(origins[0]).netloc.lower() == hosts[0].lower()
+    try:
+        return urlsplit(origins[0]).netloc.lower() == hosts[0].lower()
+    except ValueError:
+        return False
 
 
 def answer(status: HTTPStatus, content: str | bytes, kind: str = "text/plain; charset=utf-8") -> Response:
