@@ -185,7 +185,7 @@ class LiveRun {
 // Steers a run by messages; send(message) sends one.
 class LivePlayer {
     constructor(run, send) {
-        Object.assign(this, {run, send, isPlaying: false, isOver: false, mayAct: true, follows: true, before: null});
+        Object.assign(this, {run, send, isPlaying: false, follows: true, before: null});
         this.speeds = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16, 32, Infinity];
         this.speed = 1;
         this.keys = {

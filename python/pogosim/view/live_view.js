@@ -77,7 +77,6 @@ function takeStatus(message) {
     for (const id of ["step", "reset", "play"]) element(id).disabled = !steers || message.closed;
     if (!view) return;
     player.isPlaying = message.playing;
-    player.isOver = message.over;
     player.speed = message.speed ?? Infinity;
     element("speed").value = String(player.speed);
     element("title").textContent = head.title + (message.over ? " – the run is over" : "");

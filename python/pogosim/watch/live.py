@@ -27,18 +27,16 @@ from pogosim.simulation.library import check, library
 from pogosim.watch.commands import Command, RefusedError
 from pogosim.watch.frames import light_message
 from pogosim.watch.looking import Look, look_at
+from pogosim.watch.pace import PERIOD_S, Pace
 from pogosim.watch.stage import Stage, lamp_data, link_data, plain_numbers
 from pogosim.watch.values import column_names, object_values, values_of_robot
 from pogosim.watch.viewer import Viewer
 
-PERIOD_S = 1.0 / 30.0  # from frame to frame
 DETAILS_S = 0.2  # from one telling of details to the next
-BUSY_SHARE = 0.8  # of a period, in which steps are made
 MOST_LINES = 100  # that are told at a time, and to a new viewer
 MOST_CHARACTERS_OF_LINE = 500
 CLOSED = "the simulation is closed"
 LOOKS_ON = "this page looks on: only one with the address for steering can do this"
-MOST_BEHIND_S = 0.25  # of real time: what is later is given up
 
 logger = logging.getLogger("pogosim")
 
@@ -63,36 +61,6 @@ class Status:
             "closed": self.is_closed,
             "problem": self.problem,
         }
-
-
-class Pace:
-    """How many steps are due, for a speed in real time."""
-
-    def __init__(self) -> None:
-        self._step_s = 1e-4  # how long a step takes
-        self._due = 0.0  # steps, in parts
-        self._last_s = 0.0
-
-    def start(self) -> None:
-        """Count from now on."""
-        self._due, self._last_s = 0.0, time.perf_counter()
-
-    def steps(self, speed: float, time_step_s: float) -> int:
-        """Return how many steps are to be made now, within a period."""
-        now = time.perf_counter()
-        at_most = max(1, int(BUSY_SHARE * PERIOD_S / self._step_s))
-        if math.isinf(speed):
-            return at_most
-        elapsed_s = min(now - self._last_s, MOST_BEHIND_S)
-        self._last_s = now
-        self._due = min(self._due + speed * elapsed_s / time_step_s, speed * MOST_BEHIND_S / time_step_s + 1.0)
-        return min(int(self._due), at_most)
-
-    def made(self, steps: int, took_s: float) -> None:
-        """Take note of steps that were made."""
-        self._due = max(0.0, self._due - steps)
-        if steps:
-            self._step_s = 0.7 * self._step_s + 0.3 * max(took_s / steps, 1e-7)
 
 
 class LiveRun:

@@ -184,8 +184,3 @@ def plain_numbers(values: Mapping[str, Any]) -> dict[str, Any]:
         name: value if not isinstance(value, float) or np.isfinite(value) else str(value)
         for name, value in values.items()
     }
-
-
-def extent_of(low: Floats, high: Floats) -> Floats:
-    """Width and height of a box, mm, never 0."""
-    return np.where(high > low, high - low, 1.0)
