@@ -205,7 +205,9 @@ def test_what_cannot_be_analysed_is_said_in_one_line(tmp_path: Path, capsys: pyt
     assert said_of(swarm()[:0]) == f"{where}it has no row with a time and a position\n"
     assert said_of(swarm().assign(y=np.nan)) == f"{where}it has no row with a time and a position\n"
     assert said_of(swarm(), "--category", "boxes") == f"{where}it has no rows of the category 'boxes'; it has robots\n"
-    assert said_of(swarm().drop(columns="angle"), "--direction", "heading").startswith("it has no column angle; ")
+    assert said_of(swarm().drop(columns="angle"), "--direction", "heading").startswith(
+        f"{where}it has no column angle; "
+    )
     assert said_of(swarm(), "--gr-dr", "1e-9") == (
         "--gr-dr is too small for --gr-rmax: there would be more than 100000 bins\n"
     )

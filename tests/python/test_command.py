@@ -16,6 +16,7 @@ from running import PROGRAMS, Run, build_folder, ran, write_scene
 SUBCOMMANDS = (
     "new",
     "run",
+    "watch",
     "profile",
     "compare-brains",
     "batch",

@@ -89,7 +89,7 @@ def parser(prog: str) -> Parser:
     )
     made.add_argument("--pause", action="store_true", help="begin paused")
     made.add_argument(
-        "--speed", metavar="X", type=speed, default=1.0, help="times real time; max: as fast as it goes (default: 1)"
+        "--speed", metavar="X", type=speed, default=1.0, help="times real time, or max (default: %(default)s)"
     )
     made.add_argument("--close", action="store_true", help="end when the simulated time is over")
     made.add_argument(

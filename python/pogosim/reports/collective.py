@@ -15,7 +15,7 @@ from pogosim.analysis.milling import centre_of_arena
 from pogosim.analysis.motion import speed
 from pogosim.analysis.trajectories import Run
 from pogosim.command.parser import warn
-from pogosim.errors import AnalysisError
+from pogosim.errors import ToolError
 from pogosim.lines import counted
 from pogosim.reports.collective_figures import draw_metric, draw_vorticity_fields
 from pogosim.reports.collective_metrics import METRICS, Metric
@@ -31,11 +31,12 @@ def settings_of(options: argparse.Namespace, runs: Sequence[Run]) -> Settings:
     """Return the settings that the options name, and those that are the same for all runs.
 
     Raises:
-        AnalysisError: Options or data do not allow it.
+        ToolError: Options contradict each other.
+        AnalysisError: Data lack what an option needs.
     """
     for name in ("gr", "aligncorr"):
         if getattr(options, f"{name}_rmax") / getattr(options, f"{name}_dr") > MAX_BINS:
-            raise AnalysisError(f"--{name}-dr is too small for --{name}-rmax: there would be more than {MAX_BINS} bins")
+            raise ToolError(f"--{name}-dr is too small for --{name}-rmax: there would be more than {MAX_BINS} bins")
     for run in runs:
         if options.direction == "heading":
             run.need_columns(["angle"])
