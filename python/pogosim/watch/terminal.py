@@ -6,13 +6,12 @@ import contextlib
 import logging
 import os
 import signal
-import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
 
 from pogosim.errors import ToolError
-from pogosim.lines import printable, say_error
+from pogosim.lines import printable, say, say_error
 from pogosim.watch.live import LiveRun
 
 INTERRUPTED = 130
@@ -30,10 +29,8 @@ def print_out(*lines: str) -> None:
     Raises:
         OutputError: They cannot be written. A closed output is none that lines are missed on.
     """
-    if sys.stdout is None:
-        return
     try:
-        print(*map(printable, lines), sep="\n", flush=True)
+        say(*lines)
     except OSError as error:
         raise OutputError(f"cannot write to the standard output: {error.strerror}") from None
 
@@ -60,8 +57,11 @@ class Told(logging.Handler):
         text = printable(record.getMessage())
         is_robot = record.name == "pogosim.robots"
         line = text if is_robot or record.levelno < logging.WARNING else f"{record.levelname.lower()}: {text}"
-        with contextlib.suppress(OSError, ValueError):
-            print(line, file=sys.stdout if is_robot else sys.stderr, flush=True)
+        if is_robot:
+            with contextlib.suppress(OSError):
+                say(line)
+        else:
+            say_error(line)
         if self._live is not None:
             self._live.say(line)
         else:
@@ -99,8 +99,7 @@ class Signals:
 
     def _hear(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
         if self.is_wanted:
-            with contextlib.suppress(OSError, ValueError):
-                say_error(f"{self._prog}: ended at once; the data file is not complete (pogosim recover makes it so)")
+            say_error(f"{self._prog}: ended at once; the data file is not complete (pogosim recover makes it so)")
             os._exit(INTERRUPTED)
         self.is_wanted = True
 
