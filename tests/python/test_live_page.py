@@ -227,7 +227,7 @@ def test_picture_and_film_are_saved(shown: Shown, tmp_path: Path) -> None:
         assert picture.size[0] == 1000
     shown.page.click("#film")
     shown.page.click("#play")
-    wait_for(lambda: shown.simulation.time > 3.0)
+    shown.wait("Number(document.getElementById('film').title.match(/Recorded: (\\d+) kB/)?.[1]) > 20")
     with shown.page.expect_download() as download:
         shown.page.click("#film")
     assert download.value.suggested_filename in ("swarm.webm", "swarm.mp4")

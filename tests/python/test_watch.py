@@ -23,8 +23,10 @@ import numpy as np
 import pytest
 from in_process import pogosim, refusal
 from live_client import Client, wait_for
+from pogosim.simulation import Simulation
 from pogosim.utils import load_dataframe
-from pogosim.watch.server import MOST_CONNECTIONS, MOST_VIEWERS, Tokens
+from pogosim.watch.server import MOST_CONNECTIONS, Tokens
+from pogosim.watch.serving import LivePage
 from running import ROOT, write_scene
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
@@ -348,7 +350,9 @@ def test_message_that_is_too_long_ends_its_connection_only(shared: Served) -> No
 
 def test_addresses_that_are_none_are_refused_without_a_word(served: Served) -> None:
     for path in ("//[", "http://[::1/", "//[/live"):
-        assert served.get(path)[0] in (403, 404)
+        with socket.create_connection(("127.0.0.1", served.port), timeout=20) as raw:
+            raw.sendall(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+            assert raw.recv(4096).split()[1] in (b"403", b"404")
     with pytest.raises(InvalidStatus) as refused:
         opened(served.address(), additional_headers={"Origin": "http://["})
     assert refused.value.response.status_code == 403
@@ -440,20 +444,22 @@ def test_flood_of_messages_is_served_in_turn(served: Served) -> None:
     other.close()
 
 
-def test_so_many_viewers_and_no_more(hosted: Path, scene: Path, tmp_path: Path) -> None:
-    with serving(tmp_path, str(hosted), "-c", str(scene), "--port", "0", "--pause") as served:
-        own: list[ClientConnection] = []
+def test_so_many_viewers_and_no_more(hosted: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    most = 5
+    monkeypatch.setattr("pogosim.watch.server.MOST_VIEWERS", most)
+    monkeypatch.setenv("POGOSIM_DIR", str(ROOT))
+    with Simulation(hosted, scene) as simulation, LivePage(simulation) as page:
+        address = page.address.replace("http:", "ws:").replace("/?", "/live?")
+        own = [opened(address) for _ in range(most)]
         with pytest.raises(InvalidStatus) as refused:
-            for _ in range(MOST_VIEWERS + 1):
-                own.append(opened(served.address(served.look), open_timeout=30))
+            opened(address)
         assert refused.value.response.status_code == 503
-        assert len(own) == MOST_VIEWERS
         own.pop().close()
 
         def let_in() -> bool:
             with contextlib.suppress(InvalidStatus):
-                own.append(opened(served.address(served.look)))
-            return len(own) == MOST_VIEWERS
+                own.append(opened(address))
+            return len(own) == most
 
         wait_for(let_in)
         for viewer in own:

@@ -198,12 +198,18 @@ function toggleFilm() {
     if (!view || !window.MediaRecorder) return tell("This browser cannot record films.");
     const pieces = [];
     recorder = new MediaRecorder(element("arena").captureStream(30), {videoBitsPerSecond: 8e6});
-    recorder.ondataavailable = ({data}) => pieces.push(data);
+    let bytes = 0;
+    recorder.ondataavailable = ({data}) => {
+        pieces.push(data);
+        bytes += data.size;
+        element("film").title = `Recorded: ${Math.round(bytes / 1000)} kB. Press again to save it`;
+    };
     recorder.onstop = () => {
         const kind = recorder.mimeType.includes("mp4") ? "mp4" : "webm";
         save(new Blob(pieces, {type: recorder.mimeType}), `swarm.${kind}`);
         recorder = null;
         element("film").setAttribute("aria-pressed", "false");
+        element("film").title = "Film what is seen, until it is pressed again";
     };
     recorder.start(1000);
     element("film").setAttribute("aria-pressed", "true");

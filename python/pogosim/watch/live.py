@@ -81,6 +81,7 @@ class LiveRun:
         self._viewers: list[Viewer] = []
         self._stage: Stage | None = None
         self._columns: list[str] = []
+        self._head: dict[str, Any] = {}
         self._shown_step = -1
         self._is_changed = True  # what is seen, without a step
         self._pace = Pace()
@@ -230,6 +231,7 @@ class LiveRun:
             return
         self._stage = Stage(simulation)
         self._columns = column_names(simulation)
+        self._head = self._stage.head(self._columns)
         self._shown_step, self._light, self._links = -1, None, None
         self.failure = None
         self._set(is_over=simulation.is_over, is_closed=False, problem="")
@@ -239,13 +241,16 @@ class LiveRun:
     def _greet(self, viewer: Viewer, simulation: Simulation) -> None:
         """Tell a viewer all that it needs before its first frame."""
         assert self._stage is not None
-        viewer.begin(self._stage.head(self._columns), self._stage.low, self._stage.high)
+        viewer.begin(self._head, self._stage.low, self._stage.high)
         self._tell_settings(viewer, simulation)
         viewer.tell(self._message_for(viewer))
         if self._last_said:
             viewer.tell({"kind": "said", "lines": list(self._last_said)})
-        self._light = self._links = None  # they are told again
-        self._is_changed = True
+        if self._light is not None:
+            viewer.tell(light_message(self._light))
+        if self._links is not None:
+            viewer.tell({"kind": "links", "links": self._links})
+        viewer.show(self._look(simulation))
 
     def _do_requests(self, simulation: Simulation) -> None:
         while True:
