@@ -10,10 +10,12 @@ from pathlib import Path
 
 import pogosim
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests/python", "bench", "docs/figures", "examples/learning")]
 
+from chromium import CHROMIUM  # noqa: E402
 from display import Display, open_display  # noqa: E402
 from running import PROGRAMS, SHARED, compile_program  # noqa: E402
 
@@ -84,3 +86,12 @@ def display() -> Iterator[Display]:
 @pytest.fixture(scope="module")
 def window_program(program: Compile) -> Path:
     return program("window.c")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A Chromium without a window."""
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield opened
+        opened.close()

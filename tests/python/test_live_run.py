@@ -122,7 +122,7 @@ def test_it_plays_at_the_speed_that_is_wanted_and_pauses(live: LiveRun, sim: pog
     assert times == sorted(times)
 
 
-def test_played_run_has_the_bytes_of_one_that_nobody_saw(hosted: Path, scene: Path, tmp_path: Path) -> None:
+def test_played_run_has_the_bytes_of_one_without_viewers(hosted: Path, scene: Path, tmp_path: Path) -> None:
     file = tmp_path / "rows.feather"
     with pogosim.Simulation(hosted, scene, seed=4, data_file=file) as alone:
         alone.run()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import re
-import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 import yaml
+from chromium import CHROMIUM
 from in_process import pogosim, refusal
 from playwright.sync_api import sync_playwright
 from pogosim.analysis.quantities import Quantity, quantities_of
@@ -26,7 +26,6 @@ from pogosim.utils import load_dataframe
 from pyarrow import feather
 from recordings import walkers, write
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 HOSTILE = "<script>alert(1)</script>\"'&@@STYLE@@$x$"
 VOID = {"meta", "link", "img", "br", "input"}
 

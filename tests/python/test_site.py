@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,6 +11,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from chromium import CHROMIUM
 from project import CLEAN
 from running import ROOT
 
@@ -20,7 +20,6 @@ sys.path.insert(0, str(ROOT / "scripts" / "site"))
 from doxygen_pages import read_headers
 from links import OUTSIDE, for_site, page_of
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 ENVIRONMENT = CLEAN | {"NO_MKDOCS_2_WARNING": "1"}
 
 

@@ -277,11 +277,13 @@ class LiveRun:
         """Tell viewers what has changed since they were told last."""
         if self._stage is None:
             return
+        if simulation.is_over != self.status.is_over:
+            self._set(is_over=simulation.is_over, is_playing=self.status.is_playing and not simulation.is_over)
+        if not self._viewers:
+            return
         step = simulation.steps
         if step != self._shown_step or self._is_changed:
             self._shown_step, self._is_changed = step, False
-            if simulation.is_over != self.status.is_over:
-                self._set(is_over=simulation.is_over, is_playing=self.status.is_playing and not simulation.is_over)
             look = self._look(simulation)
             for viewer in self._viewers:
                 viewer.show(look)

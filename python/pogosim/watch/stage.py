@@ -18,7 +18,6 @@ from pogosim.picture.figure import counted
 from pogosim.picture.palette import PALETTE
 from pogosim.scene import Kind, bounds, floor_outline, kinds_in, read_periodic
 from pogosim.several_files import configuration_of
-from pogosim.shapes import Floats
 from pogosim.simulation import Simulation
 from pogosim.simulation.library import library
 from pogosim.simulation.objects import object_state
@@ -115,9 +114,6 @@ class Stage:
             for index, own in enumerate(self._states)
             if self._kinds[own.category].is_wall
         ]
-
-    def _lines_of(self, wall: Kind) -> list[Floats]:
-        return layers.wall_lines(wall, self._polygons)
 
     def _membranes(self, owners: npt.NDArray[np.uint32]) -> dict[str, Any] | None:
         """Return which parts belong to which membrane; None: there are none."""

@@ -27,7 +27,7 @@ def print_out(*lines: str) -> None:
     """Print lines.
 
     Raises:
-        OutputError: They cannot be written. A closed output is none that lines are missed on.
+        OutputError: They cannot be written. Where there is no standard output, nothing is printed.
     """
     try:
         say(*lines)
