@@ -73,6 +73,28 @@ int pogosim_run_set_object_pose(pogosim_run* run, size_t object, double x_mm, do
     });
 }
 
+int pogosim_run_drag_object(pogosim_run* run, size_t object, double x_mm, double y_mm, int* is_moved) {
+    return with_status_of(*run, [&] {
+        *is_moved = 0;
+        World const& world = run->simulation().world();
+        Object const& dragged = object_at(world, object);
+        if (dragged.body == kNone) {
+            throw ConfigError(fmt::format("object {} of category '{}' has no body that could be moved", object,
+                                          world.categories[dragged.category].name));
+        }
+        if (!(std::abs(x_mm) <= kMaxLength && std::abs(y_mm) <= kMaxLength)) {
+            throw ConfigError(
+                fmt::format("expected finite numbers (mm) up to {:g}, found ({:g}, {:g})", kMaxLength, x_mm, y_mm));
+        }
+        if (run->has_ended()) {
+            throw ConfigError("the run has ended: reset it, and its objects can be moved again");
+        }
+        Vec2 const place_mm{static_cast<float>(x_mm), static_cast<float>(y_mm)};
+        *is_moved = run->simulation().move_object(static_cast<std::uint32_t>(object), place_mm) ? 1 : 0;
+        return POGOSIM_OK;
+    });
+}
+
 int pogosim_run_set_alive(pogosim_run* run, size_t object, int alive) {
     return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
