@@ -115,6 +115,17 @@ def simulators_in(folder: Path) -> list[int]:
     return found
 
 
+def saved_states(folder: Path) -> list[Path]:
+    """Return the states of unfinished runs somewhere below a folder, also while finished ones are removed there."""
+    found = []
+    for place, _, files in os.walk(folder):
+        for file in (Path(place, name) for name in files if name.endswith(".state")):
+            with contextlib.suppress(FileNotFoundError):
+                if file.stat().st_size > 0:
+                    found.append(file)
+    return found
+
+
 def wait_until_gone(folder: Path) -> None:
     """Wait until no simulator of a batch is left."""
     for _ in range(600):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from batches import COMMAND, ENVIRONMENT, arguments, batch, results, script, wait_until_gone
+from batches import COMMAND, ENVIRONMENT, arguments, batch, results, saved_states, script, wait_until_gone
 from batches import write_options as write
 from pogosim.extras import installing
 from pogosim.utils import load_dataframe
@@ -213,7 +213,7 @@ def test_run_of_a_cancelled_job_goes_on_in_another(site: dict[str, str], tmp_pat
     try:
         end_s, cancelled = time.monotonic() + 90, 0
         while process.poll() is None and time.monotonic() < end_s and cancelled < 2:
-            states = [path for path in (tmp_path / "slurm").glob("tmp/**/*.state") if path.stat().st_size > 0]
+            states = saved_states(tmp_path / "slurm" / "tmp")
             running = jobs(site, "--states=RUNNING")
             if states and running:
                 ask(site, "scancel", running[0])

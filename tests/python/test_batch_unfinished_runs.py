@@ -20,6 +20,7 @@ from batches import (
     batch_apart,
     ended,
     results,
+    saved_states,
     script,
     simulators_in,
     start_batch,
@@ -33,18 +34,13 @@ SAVING = ("--save-states", "0.02")
 LIMIT_S = 120.0
 
 
-def states_in(folder: Path) -> list[Path]:
-    """Return the states of unfinished runs."""
-    return [path for path in folder.glob("tmp/**/*.state") if path.stat().st_size > 0]
-
-
 def wait_for_states(folder: Path, process: subprocess.Popen[str]) -> bool:
     """Wait until a run has saved its state; False: the batch has ended before."""
     end_s = time.monotonic() + LIMIT_S
     while time.monotonic() < end_s:
         if process.poll() is not None:
             return False
-        if states_in(folder):
+        if saved_states(folder / "tmp"):
             return True
         time.sleep(0.01)
     raise AssertionError("no state was saved")
@@ -83,7 +79,7 @@ def test_batch_goes_on_from_the_states_of_its_runs(backend: str, number: signal.
         time.sleep(chance.uniform(0.0, 0.3))
         end(process, number)
         wait_until_gone(folder)
-        has_states = bool(states_in(folder))
+        has_states = bool(saved_states(folder / "tmp"))
     last = batch_apart(folder, *options, program=program)
     assert last.code == 0, last.errors
     assert not has_states or "go on from their states" in last.output
@@ -103,7 +99,7 @@ def test_batch_that_is_asked_to_end_saves_states_at_once(tmp_path: Path) -> None
     assert end(process, signal.SIGTERM).splitlines()[-1] == (
         "pogobatch: interrupted: the states of 2 unfinished runs are in tmp; the same command continues"
     )
-    assert len(states_in(tmp_path)) == 2
+    assert len(saved_states(tmp_path / "tmp")) == 2
 
 
 def test_batch_says_what_it_leaves_and_how_states_are_continued(tmp_path: Path) -> None:
@@ -116,7 +112,7 @@ def test_batch_says_what_it_leaves_and_how_states_are_continued(tmp_path: Path) 
     process = start_batch(tmp_path, "-j", "1", "-r", "3", *SAVING, program=program)
     end_s = time.monotonic() + LIMIT_S
     while time.monotonic() < end_s and not (
-        len(list(tmp_path.glob("tmp/done_*/*.feather"))) == 2 and states_in(tmp_path)
+        len(list(tmp_path.glob("tmp/done_*/*.feather"))) == 2 and saved_states(tmp_path / "tmp")
     ):
         time.sleep(0.01)
     last = end(process, signal.SIGTERM).splitlines()[-1]
@@ -154,7 +150,7 @@ def test_runs_that_fail_by_themselves_begin_anew(tmp_path: Path) -> None:
         assert failed.code == 3, failed.errors
         assert "cannot be saved" not in failed.errors
         assert "go on from" not in failed.output
-        assert states_in(tmp_path) == []
+        assert saved_states(tmp_path / "tmp") == []
 
 
 def test_program_that_cannot_be_saved_is_told_and_runs(tmp_path: Path) -> None:
@@ -177,7 +173,7 @@ def interrupted(folder: Path, program: Path, changes: dict[str, object], *more: 
     assert wait_for_states(folder, process)
     end(process, signal.SIGKILL)
     wait_until_gone(folder)
-    assert states_in(folder)
+    assert saved_states(folder / "tmp")
 
 
 def test_states_that_do_not_fit_are_told_and_the_runs_begin_anew(tmp_path: Path) -> None:
@@ -189,7 +185,7 @@ def test_states_that_do_not_fit_are_told_and_the_runs_begin_anew(tmp_path: Path)
     for name in ("damaged", "lost"):
         folder = tmp_path / name
         interrupted(folder, program, changes)
-        for state in states_in(folder):
+        for state in saved_states(folder / "tmp"):
             if name == "damaged":
                 state.write_bytes(state.read_bytes()[:-1])
             else:
@@ -248,7 +244,7 @@ def disturbed(command: list[str], folder: Path, number: signal.Signals) -> None:
         command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     end_s = time.monotonic() + LIMIT_S
-    while not [path for path in folder.rglob("*.state") if path.stat().st_size > 0] and time.monotonic() < end_s:
+    while not saved_states(folder) and time.monotonic() < end_s:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     time.sleep(0.1)

@@ -679,6 +679,7 @@ class Simulation:
             SimulationError: The Python package anywidget is not installed, or the simulation is closed.
             ConfigurationError: The height is out of range.
         """
+        check_process(self._current.process)
         _ = self._run  # raises if it is closed
         from pogosim.watch.notebook import RunView
 
