@@ -100,7 +100,7 @@ void measure(int robots) {
     Scene const scene{canvas, camera, snapshot, background.floor()};
     Text text;
     Painter painter;
-    PaintOptions const all{.links = LinkLayer::below, .trails = true};
+    ViewOptions const all{.links = LinkLayer::below, .trails = true};
     fmt::print("{} robots, {} links, {} x {} pixels\n", robots, snapshot.links.size(), kSize.width_px, kSize.height_px);
     auto const print = [](std::string_view layer, std::function<void()> const& draw) {
         fmt::print("    {:<18}{:>8.2f} ms\n", layer, best_ms(draw));

@@ -37,7 +37,7 @@ FREE_KEYS = frozenset(
         *("data_logger_flush_row_count", "data_logger_led", "message_log", "enable_console_logging"),
         *("console_filename", "log_format", "GUI", "GUI_speed_up", "window_width", "window_height", "mm_to_pixels"),
         *("save_video_period", "frames_name", "delete_old_files", "progress_bar", "batch_options", "optimization"),
-        "flash_state",
+        *("flash_state", "view"),
     )
 )
 FREE_BEGINNING = "show_"

@@ -19,7 +19,7 @@ std::string text_of(Restart const& restart) {
     std::string text = fmt::format("{} {:d}", restart.seed, restart.overwrite);
     if (restart.window) {
         WindowState const& window = *restart.window;
-        PaintOptions const& options = window.options;
+        ViewOptions const& options = window.options;
         long const selected = options.selected_robot ? static_cast<long>(*options.selected_robot) : -1;
         Camera const camera = window.camera.value_or(kWholeArena);
         text += fmt::format(" {} {} {} {} {:d} {} {} {} {:d} {} {:d} {:d} {}", window.x_px, window.y_px,
@@ -40,7 +40,7 @@ std::optional<Restart> restart_of(std::string const& text) {
         return std::nullopt;
     }
     WindowState window;
-    PaintOptions& options = window.options;
+    ViewOptions& options = window.options;
     int layer = 0;
     long selected = -1;
     Camera camera;

@@ -66,6 +66,10 @@ std::vector<KeyGroup> configuration_reference(ObjectTypes const& types) {
     MapReader flash_state(nothing, "flash_state", reading);
     read_flash_state_map(flash_state);
     groups.push_back({"flash_state", "", "Flash memory from one run to the next.", flash_state.known_keys()});
+
+    MapReader view(nothing, "view", reading);
+    read_view_map(view, scenario.view);
+    groups.push_back({"view", "", "What the window, frames and films show.", view.known_keys()});
     return groups;
 }
 

@@ -14,6 +14,7 @@
 #include "config/reading.hpp"
 #include "geometry/formation.hpp"
 #include "world/specs.hpp"
+#include "world/view_options.hpp"
 
 namespace pogosim {
 
@@ -72,19 +73,15 @@ std::vector<Placement> given_poses(ObjectConfig const& object);
 inline constexpr int kMostPixels = 16384;
 
 /// Window and pictures.
-struct ViewConfig {
+/// The window, frames and films, and what they show.
+struct ViewConfig : ViewOptions {
     bool gui = true;
     int window_width_px = 800;
     int window_height_px = 800;
     double gui_speed_up = 1.0;  // simulated seconds per second of wall clock; 0: no limit
     double mm_to_pixels = 1.0;
-    bool show_time = true;
-    bool show_scale_bar = true;
-    bool show_communication_channels = false;
+    bool show_communication_channels = false;  // older keys for `links`
     bool show_communication_channels_above_all = false;
-    bool show_lateral_leds = true;
-    bool show_light_levels = false;
-    bool show_trajectory_traces = false;
     double save_video_period_s = -1.0;  // <= 0: no frames
     std::string frames_name = "frames/f{:010.4f}.png";
     bool delete_old_files = false;

@@ -89,6 +89,10 @@ std::span<Key<Scenario> const> scenario_keys() {
             .only_if([](Scenario const& scenario) { return scenario.flash.has_value(); }),
         K{"flash_state", Elsewhere{kFlashStateMap}, any(), "",
           "Files that keep the flash memory of robots from one run to the next; see its own table."},
+        K{"view", Elsewhere{kViewMap}, any(), "",
+          "What the window, frames and films show, beside the arena and its objects; see its own table. These keys "
+          "replace show_time and the like, and prevail over them."}
+            .may_be_empty(),
         // Things.
         K{"objects", Elsewhere{"a map of categories"}, any(), "",
           "Everything in the arena, by category; see the tables below."}
@@ -263,14 +267,14 @@ std::span<Key<ViewConfig> const> view_keys() {
           "Height of the window and of frames."},
         K{"mm_to_pixels", &ViewConfig::mm_to_pixels, any(), "pixels per mm",
           "Ignored; the arena is fitted to the window. The metadata contain the scale."},
-        K{"show_time", &ViewConfig::show_time, any(), "", "Display the time."},
-        K{"show_scale_bar", &ViewConfig::show_scale_bar, any(), "", "Draw the scale bar."},
+        K{"show_time", &ViewConfig::time, any(), "", "Display the time."},
+        K{"show_scale_bar", &ViewConfig::scale_bar, any(), "", "Draw the scale bar."},
         K{"show_communication_channels", &ViewConfig::show_communication_channels, any(), "", "Draw infrared links."},
         K{"show_communication_channels_above_all", &ViewConfig::show_communication_channels_above_all, any(), "",
           "Draw the links above the objects."},
-        K{"show_lateral_LEDs", &ViewConfig::show_lateral_leds, any(), "", "Draw LEDs 1 to 4."},
-        K{"show_light_levels", &ViewConfig::show_light_levels, any(), "", "Draw the light map."},
-        K{"show_trajectory_traces", &ViewConfig::show_trajectory_traces, any(), "", "Draw the trajectories of robots."},
+        K{"show_lateral_LEDs", &ViewConfig::lateral_leds, any(), "", "Draw LEDs 1 to 4."},
+        K{"show_light_levels", &ViewConfig::light_levels, any(), "", "Draw the light map."},
+        K{"show_trajectory_traces", &ViewConfig::trails, any(), "", "Draw the trajectories of robots."},
         K{"save_video_period", &ViewConfig::save_video_period_s, between(-1e9, 1e9), "s",
           "Simulated time between frames; 0 or less: no frames."},
         K{"frames_name", &ViewConfig::frames_name, any(), "",
@@ -344,6 +348,11 @@ void read_top_level(MapReader& reader, Scenario& scenario) {
     reader.collect([&] { scenario.magnetometer = read_magnetometer(reader); });
     reader.read(output_keys(), scenario.output);
     reader.read(view_keys(), scenario.view);
+    if (scenario.view.show_communication_channels) {
+        scenario.view.links = scenario.view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
+    }
+    reader.collect(
+        [&] { reader.read_map("view", kViewMap, [&](MapReader& map) { read_view_map(map, scenario.view); }); });
 }
 
 }  // namespace pogosim

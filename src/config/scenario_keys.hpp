@@ -50,4 +50,11 @@ FlashStateConfig read_flash_state(MapReader& top);
 /// The same from the map `flash_state` itself; the caller finishes the reader.
 FlashStateConfig read_flash_state_map(MapReader& reader);
 
+// The keys of the map `view`: what pictures show.
+
+inline constexpr std::string_view kViewMap = "a map of keys, such as {trails: true, links: below}";
+
+/// Reads the map; the caller finishes the reader. Keys that are absent leave options as they are.
+void read_view_map(MapReader& reader, ViewOptions& options);
+
 }  // namespace pogosim

@@ -53,11 +53,11 @@ struct Painter::Impl {
 Painter::Painter() : impl_(std::make_unique<Impl>()) {}
 Painter::~Painter() = default;
 
-SnapshotParts parts_for(PaintOptions const& options) {
+SnapshotParts parts_for(ViewOptions const& options) {
     return {.light = options.light_levels, .links = options.links != LinkLayer::hidden, .trails = options.trails};
 }
 
-void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, PaintOptions const& options) {
+void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, ViewOptions const& options) {
     canvas.clip_to(canvas.bounds());
     impl_->background.draw(canvas, camera, snapshot, options.light_levels);
     Scene const scene{canvas, camera, snapshot, impl_->background.floor()};

@@ -26,7 +26,7 @@ namespace pogosim {
 struct PictureFormat {
     PictureSize size;
     Camera camera;
-    PaintOptions paint;
+    ViewOptions paint;
 };
 
 /// The files that one snapshot goes into.

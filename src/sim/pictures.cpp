@@ -145,7 +145,7 @@ std::unique_ptr<FrameLock> lock_frames(Scenario const& scenario, FrameNames cons
 
 PictureFormat picture_format(Scenario const& scenario, World const& world) {
     PictureSize const size = picture_size(scenario);
-    return {.size = size, .camera = fitted(world.arena.bounds, size), .paint = paint_options(scenario)};
+    return {.size = size, .camera = fitted(world.arena.bounds, size), .paint = scenario.view};
 }
 
 std::unique_ptr<PictureWriter> make_writer(PictureFormat const& format, std::string const& film) {
@@ -163,17 +163,6 @@ double film_period_s(Scenario const& scenario) {
 
 PictureSize picture_size(Scenario const& scenario) {
     return {scenario.view.window_width_px, scenario.view.window_height_px};
-}
-
-PaintOptions paint_options(Scenario const& scenario) {
-    ViewConfig const& view = scenario.view;
-    LinkLayer const layer = view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
-    return {.time = view.show_time,
-            .scale_bar = view.show_scale_bar,
-            .links = view.show_communication_channels ? layer : LinkLayer::hidden,
-            .lateral_leds = view.show_lateral_leds,
-            .light_levels = view.show_light_levels,
-            .trails = view.show_trajectory_traces};
 }
 
 void Pictures::check_frames(Scenario const& scenario) {
@@ -226,7 +215,7 @@ Pictures::Pictures(Scenario const& scenario, World const& world, Lighting const&
       lock_(lock_frames(scenario, names_)),
       film_(film),
       taker_(world, lighting),
-      parts_(parts_for(paint_options(scenario))),
+      parts_(parts_for(scenario.view)),
       frame_times_(scenario.view.save_video_period_s, 1),
       film_times_(film_period_s(scenario), 0),
       writer_(make_writer(picture_format(scenario, world), film)) {}

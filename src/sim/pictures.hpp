@@ -18,9 +18,6 @@ namespace pogosim {
 
 PictureSize picture_size(Scenario const& scenario);
 
-/// What pictures show, as the configuration says.
-PaintOptions paint_options(Scenario const& scenario);
-
 class Pictures {
 public:
     /// Null if the run makes no pictures. `film`: empty for none. All references outlive it. Throws ConfigError if

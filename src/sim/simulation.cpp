@@ -146,7 +146,7 @@ SnapshotTaker& Simulation::snapshots() {
 }
 
 Canvas Simulation::picture(PictureSize size) {
-    PaintOptions const options = paint_options(scenario_);
+    ViewOptions const& options = scenario_.view;
     Canvas canvas(size);
     Painter().paint(canvas, fitted(world_.arena.bounds, size), snapshots().take(parts_for(options)), options);
     return canvas;

@@ -35,7 +35,7 @@ constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeadBytes = 8 + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 /// Keys that decide for how long a run goes on, and what it writes and shows: a state goes on with others.
-constexpr std::array<std::string_view, 27> kFreeKeys{"simulation_time",
+constexpr std::array<std::string_view, 28> kFreeKeys{"simulation_time",
                                                      "seed",
                                                      "user_code_timeout",
                                                      "enable_data_logging",
@@ -61,7 +61,8 @@ constexpr std::array<std::string_view, 27> kFreeKeys{"simulation_time",
                                                      "progress_bar",
                                                      "batch_options",
                                                      "optimization",
-                                                     "flash_state"};
+                                                     "flash_state",
+                                                     "view"};
 
 bool is_free(std::string_view key) {
     return key.starts_with("show_") || std::ranges::find(kFreeKeys, key) != kFreeKeys.end();

@@ -201,7 +201,7 @@ WindowSetup window_setup(Scenario const& scenario, World const& world, std::stri
     std::string const name = program_name.empty() ? "" : program_name + " - ";
     setup.title = fmt::format("{}Pogosim {}", name, POGOSIM_VERSION_STRING);
     setup.size = picture_size(scenario);
-    setup.options = paint_options(scenario);
+    setup.options = scenario.view;
     setup.duration_s = scenario.simulation_time_s;
     setup.time_step_s = world.time_step_s;
     setup.speed_up = scenario.view.gui_speed_up;

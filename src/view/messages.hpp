@@ -46,7 +46,7 @@ struct WindowState {
     bool plot = false;
     std::size_t column = 0;  // in the plot
     double speed_up = 1.0;
-    PaintOptions options;
+    ViewOptions options;
 };
 /// Ends the run and starts it again with this seed.
 struct Restart {
@@ -96,8 +96,8 @@ struct WindowSetup {
     PictureSize size;
     std::optional<WindowState> restored{};  // of the run before, instead of what is said below
     std::shared_ptr<Scenery const> scenery;
-    PaintOptions options;  // at the start
-    bool panels = true;    // shown at the start
+    ViewOptions options;  // at the start
+    bool panels = true;   // shown at the start
     std::uint32_t seed = 0;
     double duration_s = 0.0;  // of the whole run
     double time_step_s = 0.01;

@@ -88,7 +88,7 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
 
 /// Returns whether they are shown.
 bool draw_switches(PanelState& state) {
-    PaintOptions& options = *state.options;
+    ViewOptions& options = *state.options;
     if (!ImGui::CollapsingHeader("View")) {
         return false;
     }

@@ -48,7 +48,7 @@ struct PanelState {
     Moment const* moment = nullptr;  // null: none yet
     RunStatus status;                // of the run, or what the user has asked of it since
     ColumnHistory const* history = nullptr;
-    PaintOptions* options = nullptr;
+    ViewOptions* options = nullptr;
     bool help = false;
     bool control = true;
     bool plot = false;

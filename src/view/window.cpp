@@ -542,7 +542,7 @@ private:
     Painter painter_;
     Camera camera_;
     ColumnHistory history_;
-    PaintOptions options_;
+    ViewOptions options_;
     PanelState state_;
     MouseStates mouse_;
     float wheel_ = 0.0F;  // lines up since the last picture, over a panel

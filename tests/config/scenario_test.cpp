@@ -80,9 +80,9 @@ TEST(Scenario, DefaultsAreThoseOfTheConfigurationSheet) {
     EXPECT_EQ(v.window_height_px, 800);
     EXPECT_EQ(v.gui_speed_up, 1.0);
     EXPECT_EQ(v.mm_to_pixels, 1.0);
-    EXPECT_TRUE(v.gui && v.show_time && v.show_scale_bar && v.show_lateral_leds);
-    EXPECT_FALSE(v.show_communication_channels || v.show_communication_channels_above_all || v.show_light_levels ||
-                 v.show_trajectory_traces || v.delete_old_files);
+    EXPECT_TRUE(v.gui && v.time && v.scale_bar && v.lateral_leds);
+    EXPECT_FALSE(v.show_communication_channels || v.show_communication_channels_above_all || v.light_levels ||
+                 v.trails || v.delete_old_files);
     EXPECT_EQ(v.save_video_period_s, -1.0);
     EXPECT_EQ(v.frames_name, "frames/f{:010.4f}.png");
 
@@ -253,9 +253,9 @@ parameters: {any: thing}
     EXPECT_EQ(s.view.window_width_px, 100);
     EXPECT_EQ(s.view.window_height_px, 200);
     EXPECT_EQ(s.view.mm_to_pixels, 0.5);
-    EXPECT_FALSE(s.view.show_time || s.view.show_scale_bar || s.view.show_lateral_leds);
+    EXPECT_FALSE(s.view.time || s.view.scale_bar || s.view.lateral_leds);
     EXPECT_TRUE(s.view.show_communication_channels && s.view.show_communication_channels_above_all &&
-                s.view.show_light_levels && s.view.show_trajectory_traces && s.view.delete_old_files);
+                s.view.light_levels && s.view.trails && s.view.delete_old_files);
     EXPECT_EQ(s.view.save_video_period_s, 0.5);
     EXPECT_EQ(s.view.frames_name, "f/{}.png");
     EXPECT_EQ(s.output.data_filename, "d.feather");
@@ -267,6 +267,30 @@ parameters: {any: thing}
     EXPECT_EQ(s.output.console_filename, "c.txt");
     EXPECT_EQ(s.output.log_format, LogFormat::minimal);
     EXPECT_EQ(find_path(s.source->tree, "parameters.any")->scalar, "thing");
+}
+
+TEST(Scenario, EveryKeyOfViewReachesItsMember) {
+    Scenario const s = load(
+        "arena_file: a.csv\n"
+        "view: {time: false, scale_bar: false, links: above, lateral_LEDs: false, "
+        "light_levels: true, trails: true}\n");
+    ViewOptions const expected{.time = false,
+                               .scale_bar = false,
+                               .links = LinkLayer::above,
+                               .lateral_leds = false,
+                               .light_levels = true,
+                               .trails = true};
+    EXPECT_EQ(static_cast<ViewOptions const&>(s.view), expected);
+}
+
+TEST(Scenario, OlderKeysOfTheViewHoldWhereItSaysNothing) {
+    std::string const older = "arena_file: a.csv\nshow_time: false\nshow_communication_channels: true\n";
+    EXPECT_EQ(load(older).view.links, LinkLayer::below);
+    EXPECT_EQ(load(older + "show_communication_channels_above_all: true\n").view.links, LinkLayer::above);
+    Scenario const s = load(older + "view: {links: hidden, trails: true}\n");
+    EXPECT_EQ(s.view.links, LinkLayer::hidden);
+    EXPECT_FALSE(s.view.time);
+    EXPECT_TRUE(s.view.trails);
 }
 
 TEST(Scenario, EveryRobotKeyReachesItsMember) {

@@ -97,7 +97,7 @@ TEST(UnknownKey, LevelThatHasItIsNamed) {
     EXPECT_EQ(warnings_of(kRobots + "light_mode: gradient\n"),
               Lines{"x.yaml:6: unknown key 'light_mode' is ignored; it belongs in a category, as "
                     "objects.<category>.light_mode"});
-    for (std::string const key : {"magnetometer", "flash_state", "time_step"}) {
+    for (std::string const key : {"magnetometer", "flash_state", "view", "time_step"}) {
         EXPECT_EQ(warnings_of(kRobots + "    " + key + ": {}\n"),
                   Lines{"x.yaml:6: unknown key 'objects.robots." + key + "' is ignored; it belongs at the top level"});
     }

@@ -22,7 +22,7 @@ using testing::add_robot;
 using testing::square_world;
 
 constexpr PictureSize kSize{400, 400};
-constexpr PaintOptions kNothingWritten{.time = false, .scale_bar = false};
+constexpr ViewOptions kNothingWritten{.time = false, .scale_bar = false};
 constexpr Rgb kRed{25, 0, 0};
 constexpr Rgb kGreen{0, 25, 0};
 constexpr Pixel kLitRed = 0xFFD20000;
@@ -38,7 +38,7 @@ Snapshot snapshot_of(World const& world) {
     return snapshot;
 }
 
-Canvas painted(Snapshot const& snapshot, PaintOptions const& options = kNothingWritten, PictureSize size = kSize) {
+Canvas painted(Snapshot const& snapshot, ViewOptions const& options = kNothingWritten, PictureSize size = kSize) {
     Canvas canvas(size);
     Painter painter;
     painter.paint(canvas, fitted(snapshot.scenery->arena.bounds, size), snapshot, options);
@@ -137,7 +137,7 @@ TEST(Robot, ShowsItsLateralLedsOnItsRim) {
             Vec2 const towards = direction(0.3F + quarters * 0.5F * std::numbers::pi_v<float>);
             EXPECT_EQ(at_mm(canvas, Vec2{500, 500} + 22.5F * towards), colours[k]) << k << is_turned;
         }
-        PaintOptions without = kNothingWritten;
+        ViewOptions without = kNothingWritten;
         without.lateral_leds = false;
         Canvas const plain = painted(snapshot_of(world), without, {1600, 1600});
         EXPECT_EQ(pixels_like(plain, kLitGreen), 0U);
@@ -227,7 +227,7 @@ Snapshot lit_world(std::vector<std::int16_t> const& level) {
 }
 
 TEST(Light, BrightensTheFloorWhereThereIsMoreOfIt) {
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.light_levels = true;
     Canvas const canvas = painted(lit_world({0, 100}), options);
     EXPECT_EQ(at_mm(canvas, {200, 500}), palette::kFloor);
@@ -240,7 +240,7 @@ TEST(Light, BrightensTheFloorWhereThereIsMoreOfIt) {
 }
 
 TEST(Light, ThatIsEvenOrNotAskedForShowsNothing) {
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     Canvas const without = painted(lit_world({0, 100}), options);
     options.light_levels = true;
     EXPECT_EQ(pixels_of(painted(lit_world({300, 300}), options)), pixels_of(without));
@@ -332,7 +332,7 @@ TEST(BodyLink, AcrossTheSeamShowsOnBothSides) {
 
 TEST(Link, HasTheColourOfEachSendersEmitterOnItsHalf) {
     for (LinkLayer const layer : {LinkLayer::below, LinkLayer::above}) {
-        PaintOptions options = kNothingWritten;
+        ViewOptions options = kNothingWritten;
         options.links = layer;
         Canvas const canvas = painted(linked_world(0b0110, 0b1000), options, {1600, 1600});
         EXPECT_TRUE(looks_like(at_mm(canvas, {300, 500}), palette::kLinkByEmitter[1]));
@@ -344,7 +344,7 @@ TEST(Link, HasTheColourOfEachSendersEmitterOnItsHalf) {
 }
 
 TEST(Link, OfOneWayFadesAndEndsInAnArrowHead) {
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.links = LinkLayer::below;
     Canvas const canvas = painted(linked_world(0b0001, 0), options, {1600, 1600});
     EXPECT_TRUE(looks_like(at_mm(canvas, {300, 500}), palette::kLinkByEmitter[0]));
@@ -361,7 +361,7 @@ TEST(Link, AcrossTheSeamShowsOnBothSides) {
     Snapshot snapshot = snapshot_of(world);
     snapshot.links.push_back(
         {.from = 0, .to = 1, .from_mm = {977, 500}, .to_mm = {1023, 500}, .emitters = 1, .emitters_back = 2});
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.links = LinkLayer::above;
     Canvas const canvas = painted(snapshot, options, {1600, 1600});
     EXPECT_TRUE(looks_like(at_mm(canvas, {985, 500}), palette::kLinkByEmitter[0]));
@@ -380,7 +380,7 @@ TEST(Trail, IsDrawnWhereTheRobotWasInTheColourOfTheTime) {
     }
     Snapshot snapshot = snapshot_of(world);
     snapshot.trails = std::make_shared<Trails const>(trails);
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     Canvas const without = painted(snapshot, options, {1600, 1600});
     EXPECT_EQ(at_mm(without, {700, 500}), palette::kFloor);
     options.trails = true;
@@ -403,7 +403,7 @@ TEST(Trail, IsNeverDrawnAcrossTheSeam) {
     }
     Snapshot snapshot = snapshot_of(world);
     snapshot.trails = std::make_shared<Trails const>(trails);
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.trails = true;
     Canvas const canvas = painted(snapshot, options);
     EXPECT_NE(at_mm(canvas, {50, 500}), palette::kFloor);
@@ -434,7 +434,7 @@ TEST(Selection, HasARingAroundIt) {
     add_robot(world, {300, 300});
     add_robot(world, {700, 700});
     Snapshot const snapshot = snapshot_of(world);
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.selected_robot = 1;
     Canvas const canvas = painted(snapshot, options, {1600, 1600});
     EXPECT_GT(pixels_like(canvas, palette::kSelectionRim), 100U);
@@ -456,7 +456,7 @@ TEST(Painter, GivesEqualPixelsForEqualSnapshotsWhateverItDrewBefore) {
     Box const bounds = world.arena.bounds;
     Snapshot snapshot = snapshot_of(world);
     for (int change = 0; change < 8; ++change) {
-        PaintOptions options;
+        ViewOptions options;
         Camera camera = fitted(bounds, kSize);
         if (change == 1) {
             snapshot.led[2][0] = kRed;
@@ -514,7 +514,7 @@ TEST(Picture, OfAnySizeWithStrangePositionsIsDrawn) {
         snapshot.links.push_back(
             {.from = 0, .to = 1, .from_mm = snapshot.position_mm[0], .to_mm = {1e30F, 0}, .emitters = 1});
         snapshot.lamps.push_back({.centre_mm = {1e30F, 0}, .shape = {}, .has_beam = true, .beam_is_on = true});
-        PaintOptions options{.links = LinkLayer::above, .light_levels = true, .trails = true, .selected_robot = 1};
+        ViewOptions options{.links = LinkLayer::above, .light_levels = true, .trails = true, .selected_robot = 1};
         for (PictureSize const size : {PictureSize{1, 1}, PictureSize{0, 0}, PictureSize{3, 2000}, kSize}) {
             Canvas const canvas = painted(snapshot, options, size);
             EXPECT_EQ(canvas.size(), size);
@@ -536,7 +536,7 @@ TEST(ScaleBar, HasARoundLength) {
 TEST(ScaleBar, AndTimeAreWrittenInTheirCorners) {
     World const world = square_world();
     Snapshot const snapshot = snapshot_of(world);
-    auto const changed_in = [&](PaintOptions const& options) {
+    auto const changed_in = [&](ViewOptions const& options) {
         Canvas const with = painted(snapshot, options);
         Canvas const without = painted(snapshot, kNothingWritten);
         std::set<int> quarters;
@@ -590,7 +590,7 @@ std::vector<Pixel> written(std::string const& text) {
     return cut_out(canvas, box_of_drawn(canvas, canvas.bounds()));
 }
 
-Canvas painted_far_away(Snapshot const& snapshot, Camera const& camera, PaintOptions const& options) {
+Canvas painted_far_away(Snapshot const& snapshot, Camera const& camera, ViewOptions const& options) {
     Canvas canvas(kSize);
     Painter().paint(canvas, camera, snapshot, options);
     return canvas;
@@ -703,7 +703,7 @@ TEST(LateralLed, IsTheInnerHalfOfADiskOnTheRim) {
 
 TEST(Light, HasItsFirstRowAtTheTopAndItsFirstColumnOnTheLeft) {
     Snapshot snapshot = snapshot_of(square_world());
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.light_levels = true;
     for (std::size_t lit = 0; lit < 6; ++lit) {
         LightMap map{.columns = 3, .rows = 2, .origin_mm = {0, 0}, .cell_mm = {1000.0F / 3.0F, 500}, .level = {}};
@@ -720,7 +720,7 @@ TEST(Light, HasItsFirstRowAtTheTopAndItsFirstColumnOnTheLeft) {
 }
 
 TEST(Link, HasTheColourOfTheFirstEmitterOfEachSender) {
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.links = LinkLayer::above;
     for (std::size_t face = 0; face < kMostFaces; ++face) {
         std::size_t const back = (face + 1) % kMostFaces;
@@ -738,7 +738,7 @@ TEST(Link, HasTheColourOfTheFirstEmitterOfEachSender) {
 }
 
 TEST(Link, OfOneWayHasItsArrowHeadAtTheListenerAlone) {
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.links = LinkLayer::below;
     Snapshot snapshot = snapshot_of(square_world());
     for (int i = 0; i < 8; ++i) {
@@ -785,7 +785,7 @@ TEST(Trail, FadesAndThinsTowardsItsEnd) {
     auto const trails = trail_through(world, places);
     Snapshot snapshot = snapshot_of(world);
     snapshot.trails = trails;
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.trails = true;
     Canvas const canvas = painted(snapshot, options, {1600, 1600});
     auto const green = [&](float x_mm) { return static_cast<int>(at_mm(canvas, {x_mm, 500}) >> 8U & 0xFFU); };
@@ -819,7 +819,7 @@ TEST(Trail, IsBrokenAtBothSeamsOfAPeriodicArena) {
         auto const trails = trail_through(world, places);
         Snapshot snapshot = snapshot_of(world);
         snapshot.trails = trails;
-        PaintOptions options = kNothingWritten;
+        ViewOptions options = kNothingWritten;
         options.trails = true;
         Vec2 const ahead = 0.5F * step;
         Canvas const canvas = painted(snapshot, options);
@@ -837,7 +837,7 @@ TEST(Selection, IsARingAroundTheSelectedRobotAndNothingElse) {
     add_robot(world, {700, 600});
     add_robot(world, {780, 600});
     Snapshot const snapshot = snapshot_of(world);
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     Canvas const without = painted(snapshot, options, {1600, 1600});
     options.selected_robot = 1;
     Canvas const with = painted(snapshot, options, {1600, 1600});
@@ -870,7 +870,7 @@ TEST(Selection, OfAWallOrAMembraneIsALineAlongItsOutline) {
     Snapshot snapshot = snapshot_of(world);
     snapshot.heading_rad.resize(snapshot.position_mm.size());
     Vec2 const on_wall[] = {{400, 300}, {450, 400}, {350, 400}};
-    PaintOptions options = kNothingWritten;
+    ViewOptions options = kNothingWritten;
     options.selected_robot = wall;
     Canvas const wall_selected = painted(snapshot, options, {1600, 1600});
     options.selected_robot = membrane;
@@ -908,7 +908,7 @@ protected:
 
     World world_ = square_world();
     Snapshot snapshot_;
-    PaintOptions options_ = kNothingWritten;
+    ViewOptions options_ = kNothingWritten;
 };
 
 constexpr Vec2 kCrossing{500, 500};  // of the link and the trail
