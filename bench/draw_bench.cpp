@@ -96,8 +96,9 @@ void measure(int robots) {
     Camera const camera = fitted(snapshot.scenery->arena.bounds, kSize);
     Canvas canvas(kSize);
     Background background;
-    background.draw(canvas, camera, snapshot, false);
-    Scene const scene{canvas, camera, snapshot, background.floor()};
+    Colours const colours;
+    background.draw(canvas, camera, snapshot, colours, false);
+    Scene const scene{canvas, camera, snapshot, background.floor(), colours};
     Text text;
     Painter painter;
     ViewOptions const all{.links = LinkLayer::below, .trails = true};
@@ -105,8 +106,8 @@ void measure(int robots) {
     auto const print = [](std::string_view layer, std::function<void()> const& draw) {
         fmt::print("    {:<18}{:>8.2f} ms\n", layer, best_ms(draw));
     };
-    print("new background", [&] { Background().draw(canvas, camera, snapshot, false); });
-    print("same background", [&] { background.draw(canvas, camera, snapshot, false); });
+    print("new background", [&] { Background().draw(canvas, camera, snapshot, colours, false); });
+    print("same background", [&] { background.draw(canvas, camera, snapshot, colours, false); });
     print("links", [&] { draw_links(scene); });
     print("trails", [&] { draw_trails(scene); });
     print("glows", [&] { draw_glows(scene); });

@@ -45,6 +45,7 @@ try:
     import shadows
     import shapes_of_bodies
     import swarm
+    import views
     import window
     from pictures import DOCS, Picture, difference, keep
     from quotes import Quote, keep_quote, quote_difference
@@ -86,6 +87,7 @@ SCRIPTS: dict[str, ModuleType] = {
         shadows,
         shapes_of_bodies,
         swarm,
+        views,
         window,
     )
 }

@@ -4,8 +4,12 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 #include <string>
+
+#include "base/error.hpp"
+#include "config/scenario_keys.hpp"
 
 namespace pogosim {
 
@@ -14,7 +18,7 @@ namespace {
 constexpr auto kVariable = "POGOSIM_RESTART";
 constexpr Camera kWholeArena{.centre_mm = {}, .scale_px_mm = 0.0F};  // stands for no camera
 
-// Numbers with blanks between them.
+// Numbers with blanks between them, then the view as YAML.
 std::string text_of(Restart const& restart) {
     std::string text = fmt::format("{} {:d}", restart.seed, restart.overwrite);
     if (restart.window) {
@@ -26,9 +30,7 @@ std::string text_of(Restart const& restart) {
                             window.size.width_px, window.size.height_px, window.full_screen, camera.centre_mm.x,
                             camera.centre_mm.y, camera.scale_px_mm, window.paused, window.speed_up, window.panels,
                             window.plot, window.column);
-        text += fmt::format(" {:d} {:d} {} {:d} {:d} {:d} {}", options.time, options.scale_bar,
-                            static_cast<int>(options.links), options.lateral_leds, options.light_levels, options.trails,
-                            selected);
+        text += fmt::format(" {}\n{}", selected, view_as_yaml(options));
     }
     return text;
 }
@@ -40,18 +42,19 @@ std::optional<Restart> restart_of(std::string const& text) {
         return std::nullopt;
     }
     WindowState window;
-    ViewOptions& options = window.options;
-    int layer = 0;
     long selected = -1;
     Camera camera;
     numbers >> window.x_px >> window.y_px >> window.size.width_px >> window.size.height_px >> window.full_screen >>
         camera.centre_mm.x >> camera.centre_mm.y >> camera.scale_px_mm >> window.paused >> window.speed_up >>
-        window.panels >> window.plot >> window.column >> options.time >> options.scale_bar >> layer >>
-        options.lateral_leds >> options.light_levels >> options.trails >> selected;
-    if (numbers && layer >= 0 && layer <= static_cast<int>(LinkLayer::above)) {
-        options.links = static_cast<LinkLayer>(layer);
+        window.panels >> window.plot >> window.column >> selected;
+    if (numbers) {
+        try {
+            window.options = view_from_yaml(std::string(std::istreambuf_iterator<char>(numbers), {}));
+        } catch (ConfigError const&) {
+            return restart;  // not of a window of ours
+        }
         if (selected >= 0) {
-            options.selected_robot = static_cast<std::uint32_t>(selected);
+            window.options.selected_robot = static_cast<std::uint32_t>(selected);
         }
         if (camera.scale_px_mm > 0.0F) {
             window.camera = camera;

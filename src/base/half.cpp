@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pogosim {
 
@@ -33,6 +34,20 @@ std::uint16_t magnitude_to_half(double magnitude) {
 std::uint16_t to_half(double value) {
     std::uint16_t const sign = std::signbit(value) ? kSign : std::uint16_t{0};
     return sign | magnitude_to_half(std::abs(value));
+}
+
+double from_half(std::uint16_t bits) {
+    int const biased = (bits & kInfinity) >> kMantissaBits;
+    int const mantissa = bits & ((1 << kMantissaBits) - 1);
+    double magnitude = 0.0;
+    if ((bits & kInfinity) == kInfinity) {
+        magnitude = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    } else {
+        // The reverse of the count above; 0 is the exponent of subnormal numbers.
+        int const units = biased == 0 ? mantissa : mantissa + (1 << kMantissaBits);
+        magnitude = std::ldexp(units, std::max(biased, 1) - 1 + kMinExponent - kMantissaBits);
+    }
+    return (bits & kSign) != 0 ? -magnitude : magnitude;
 }
 
 }  // namespace pogosim

@@ -9,4 +9,7 @@ namespace pogosim {
 /// NaN, and zero keeps its sign. Source: IEEE 754-2019, sections 3.6 and 4.3.1.
 std::uint16_t to_half(double value);
 
+/// The value of such bits, exactly.
+double from_half(std::uint16_t bits);
+
 }  // namespace pogosim

@@ -111,6 +111,12 @@ std::string key_of(Setting setting) {
             return "arena_surface";
         case Setting::boundary_condition:
             return "boundary_condition";
+        case Setting::color_by:
+            return "view.color_by";
+        case Setting::follow:
+            return "view.follow";
+        case Setting::heat_map:
+            return "view.heat_map";
         case Setting::console_filename:
             return "console_filename";
         case Setting::data_filename:

@@ -57,4 +57,8 @@ inline constexpr std::string_view kViewMap = "a map of keys, such as {trails: tr
 /// Reads the map; the caller finishes the reader. Keys that are absent leave options as they are.
 void read_view_map(MapReader& reader, ViewOptions& options);
 
+/// Options as YAML of that map, but for the selected robot; and from there. Throws ConfigError.
+std::string view_as_yaml(ViewOptions const& options);
+ViewOptions view_from_yaml(std::string const& yaml);
+
 }  // namespace pogosim

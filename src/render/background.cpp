@@ -33,21 +33,23 @@ PixelBox box_around(std::vector<Polygon> const& polygons_px, float width, PixelB
 
 }  // namespace
 
-void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, bool light_levels) {
+void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, Colours const& colours,
+                      bool light_levels) {
     std::shared_ptr<LightMap const> const light = light_levels ? snapshot.light : nullptr;
-    std::vector<Pixel> colours = wall_colours(snapshot);
-    bool const same_floor = is_as_before(canvas, camera, snapshot);
+    std::vector<Pixel> walls = wall_colours(snapshot, colours);
+    bool const same_floor = is_as_before(canvas, camera, snapshot, colours);
     if (!same_floor) {
         scenery_ = snapshot.scenery;
         camera_ = camera;
-        draw_floor(canvas, camera, *scenery_);
+        colours_ = colours;
+        draw_floor(canvas, camera, *scenery_, colours);
     }
-    bool const is_plain = !light && colours.empty();
-    if (!is_plain && (!same_floor || !is_same_light(light.get(), light_.get()) || colours != wall_colours_)) {
-        wall_colours_ = std::move(colours);
+    bool const is_plain = !light && walls.empty();
+    if (!is_plain && (!same_floor || !is_same_light(light.get(), light_.get()) || walls != wall_colours_)) {
+        wall_colours_ = std::move(walls);
         picture_ = empty_;
         if (light) {
-            draw_light(camera, *scenery_, *light);
+            draw_light(camera, *scenery_, *light, colours.lamplight);
         }
         draw_programmed_walls(camera, snapshot);
     }
@@ -56,15 +58,17 @@ void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snap
     std::copy(shown.pixels().begin(), shown.pixels().end(), canvas.pixels().begin());
 }
 
-bool Background::is_as_before(Canvas const& canvas, Camera const& camera, Snapshot const& snapshot) const {
-    return snapshot.scenery == scenery_ && camera == camera_ && canvas.size() == empty_.size();
+bool Background::is_as_before(Canvas const& canvas, Camera const& camera, Snapshot const& snapshot,
+                              Colours const& colours) const {
+    return snapshot.scenery == scenery_ && camera == camera_ && colours == colours_ && canvas.size() == empty_.size();
 }
 
-void Background::draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery) {
+void Background::draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery,
+                            Colours const& colours) {
     empty_.resize(canvas.size());
-    empty_.fill(palette::kPaper);
+    empty_.fill(colours.paper);
     Snapshot const unused;
-    Scene const scene{empty_, camera, unused, floor_};
+    Scene const scene{empty_, camera, unused, floor_, colours};
     std::vector<Polygon> polygons;
     for (Polygon const& polygon : scenery.arena.polygons) {
         polygons.push_back(scene.to_pixels(polygon));
@@ -76,17 +80,17 @@ void Background::draw_floor(Canvas const& canvas, Camera const& camera, Scenery 
     }
     floor_.reset(empty_.bounds());
     floor_.add_polygons(polygons);
-    empty_.cover(floor_, palette::kFloor);
+    empty_.cover(floor_, scene.colours.floor);
 
     scratch_.reset(empty_.bounds());
     for (Polygon const& polygon : polygons) {
         add_outline(scratch_, polygon, kWallWidth * scene.point_px());
     }
-    empty_.cover(scratch_, palette::kWall);
+    empty_.cover(scratch_, scene.colours.wall);
     inside_.clear();
 }
 
-void Background::draw_light(Camera const& camera, Scenery const& scenery, LightMap const& light) {
+void Background::draw_light(Camera const& camera, Scenery const& scenery, LightMap const& light, Pixel lamplight) {
     std::size_t const cells = light.level.size();
     if (inside_.size() != cells) {
         inside_.resize(cells);
@@ -147,13 +151,13 @@ void Background::draw_light(Camera const& camera, Scenery const& scenery, LightM
             float const left = above[column.low] + row.share * (below[column.low] - above[column.low]);
             float const right = above[column.high] + row.share * (below[column.high] - above[column.high]);
             float const opacity = left + column.share * (right - left);
-            blend(*pixel, palette::kLamplight, opacity * static_cast<float>(floor[x]), 256.0F / 255.0F);
+            blend(*pixel, lamplight, opacity * static_cast<float>(floor[x]), 256.0F / 255.0F);
         }
     }
 }
 
 void Background::draw_programmed_walls(Camera const& camera, Snapshot const& snapshot) {
-    Scene const scene{picture_, camera, snapshot, floor_};
+    Scene const scene{picture_, camera, snapshot, floor_, colours_};
     for (std::size_t i = 0; i < wall_colours_.size(); ++i) {
         std::vector<Polygon> polygons;
         for (Polygon const& polygon : snapshot.scenery->outlines[i].polygons) {
@@ -180,12 +184,12 @@ void Background::draw_programmed_walls(Camera const& camera, Snapshot const& sna
     }
 }
 
-std::vector<Pixel> Background::wall_colours(Snapshot const& snapshot) const {
-    std::vector<Pixel> colours;
+std::vector<Pixel> Background::wall_colours(Snapshot const& snapshot, Colours const& colours) const {
+    std::vector<Pixel> walls;
     for (Outline const& outline : snapshot.scenery->outlines) {
-        colours.push_back(led_colour(snapshot.led[outline.robot][0], palette::kDarkWall));
+        walls.push_back(colours.of_led(snapshot.led[outline.robot][0], colours.dark_wall));
     }
-    return colours;
+    return walls;
 }
 
 }  // namespace pogosim

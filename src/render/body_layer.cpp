@@ -53,7 +53,7 @@ Figure figure_of(Scene const& scene, Object const& object) {
         .position_mm = snapshot.position_mm[object.body],
         .axis = has_axis ? direction(heading) : Vec2{1.0F, 0.0F},
         .has_axis = has_axis,
-        .colour = palette::kNoLed,
+        .colour = scene.colours.no_led,
         .glows = false,
         .led = nullptr,
         .led_parts = nullptr,
@@ -61,8 +61,8 @@ Figure figure_of(Scene const& scene, Object const& object) {
     };
     if (object.robot != kNone) {
         figure.led = &snapshot.led[object.robot];
-        figure.colour = led_colour((*figure.led)[0]);
-        figure.glows = is_lit((*figure.led)[0]);
+        figure.colour = body_colour(scene, object.robot);
+        figure.glows = !snapshot.colours && is_lit((*figure.led)[0]);
         auto const& spec = scenery.categories[object.category].spec.robot;
         figure.led_parts = &spec->model.leds;
         figure.leds_turned = spec->rotate_leds_45_deg && are_usual(spec->model.leds);
@@ -103,16 +103,16 @@ void draw_lateral_leds(Scene const& scene, Figure const& figure, Vec2 at_mm, flo
         }
         if (!part.is_on_rim()) {
             Vec2 const centre = scene.to_pixels(at_mm + rotate(part.place.at_mm(figure.radius_mm), figure.axis));
-            scene.canvas.disk(centre, radius_px + edge_px, palette::kEdge);
-            scene.canvas.disk(centre, radius_px, led_colour(led));
+            scene.canvas.disk(centre, radius_px + edge_px, scene.colours.edge);
+            scene.canvas.disk(centre, radius_px, scene.colours.of_led(led));
             continue;
         }
         static Vec2 const eighth_of_a_turn = direction(0.25F * std::numbers::pi_v<float>);
         Vec2 const side = figure.leds_turned ? rotate(part.direction, eighth_of_a_turn) : part.direction;
         Vec2 const outwards = rotate(side, figure.axis);
         Vec2 const centre = scene.to_pixels(at_mm + reach(figure.shape, side) * outwards);
-        scene.canvas.half_disk(centre, radius_px + edge_px, -outwards, palette::kEdge);
-        scene.canvas.half_disk(centre, radius_px, -outwards, led_colour(led));
+        scene.canvas.half_disk(centre, radius_px + edge_px, -outwards, scene.colours.edge);
+        scene.canvas.half_disk(centre, radius_px, -outwards, scene.colours.of_led(led));
     }
 }
 
@@ -129,7 +129,8 @@ void draw_mark(Scene const& scene, Figure const& figure, Vec2 at_mm) {
         float const ahead_mm = reach(figure.shape, {1.0F, 0.0F});
         scene.canvas.line(scene.to_pixels(at_mm + 0.25F * ahead_mm * figure.axis),
                           scene.to_pixels(at_mm + 0.95F * ahead_mm * figure.axis),
-                          std::max(kMark * size_px, kThinnestMarkPx), Cap::butt, contrast_to(figure.colour));
+                          std::max(kMark * size_px, kThinnestMarkPx), Cap::butt,
+                          scene.colours.contrast_to(figure.colour));
     }
 }
 
@@ -137,7 +138,7 @@ void draw_figure(Scene const& scene, Figure const& figure, bool lateral_leds) {
     scene.for_each_image(figure.position_mm, figure.radius_mm, [&](Vec2 at_mm) {
         float const edge_px = edge_of(scene, figure);
         if (edge_px > 0.0F) {
-            draw_shape(scene, figure, at_mm, 0.5F * edge_px, palette::kEdge);
+            draw_shape(scene, figure, at_mm, 0.5F * edge_px, scene.colours.edge);
         }
         draw_shape(scene, figure, at_mm, -0.5F * edge_px, figure.colour);
         draw_mark(scene, figure, at_mm);
@@ -163,7 +164,7 @@ void draw_membrane(Scene const& scene, Object const& object, Coverage& scratch) 
         membrane.segments ? 0.5F * membrane.thickness_mm.value_or(membrane.radius_mm) : membrane.radius_mm;
     float const dot_mm = half_mm * (membrane.segments ? 0.35F : 1.0F);
     float const line_mm = 2.0F * half_mm / (membrane.segments ? 1.0F : 3.0F);
-    Pixel const colour = object.robot == kNone ? palette::kNoLed : led_colour(scene.snapshot.led[object.robot][0]);
+    Pixel const colour = object.robot == kNone ? scene.colours.no_led : body_colour(scene, object.robot);
     Polygon const centres = unrolled(scene, object);
     Box around = bounding_box(centres);
     around.min = around.min - Vec2{half_mm, half_mm};
@@ -180,7 +181,7 @@ void draw_membrane(Scene const& scene, Object const& object, Coverage& scratch) 
         float const edge_px = radius_px < kLeastEdgedRadiusPx ? 0.0F : std::max(kEdge * radius_px, kThinnestEdgePx);
         for (Vec2 const corner : corners) {
             if (edge_px > 0.0F) {
-                scene.canvas.disk(corner, radius_px + 0.5F * edge_px, palette::kEdge);
+                scene.canvas.disk(corner, radius_px + 0.5F * edge_px, scene.colours.edge);
             }
             scene.canvas.disk(corner, radius_px - 0.5F * edge_px, colour);
         }
@@ -197,6 +198,15 @@ void for_each_rigid_object(Scene const& scene, Draw const& draw) {
 }
 
 }  // namespace
+
+Pixel body_colour(Scene const& scene, std::uint32_t robot) {
+    if (!scene.snapshot.colours) {
+        return scene.colours.of_led(scene.snapshot.led[robot][0]);
+    }
+    float const value = scene.snapshot.colours->values[robot];
+    ColourKey const key = key_of(*scene.snapshot.colours);
+    return std::isfinite(value) ? key.colour(scene.colours, key.share(value)) : scene.colours.no_led;
+}
 
 void draw_membranes(Scene const& scene) {
     Coverage scratch;

@@ -28,12 +28,12 @@ Pixel mixed(Pixel from, Pixel to, float share) {
 void draw_dot(Scene const& scene, Vec2 centre_mm, float radius, Pixel colour) {
     float const unit = scene.point_px();
     Vec2 const centre = scene.to_pixels(centre_mm);
-    scene.canvas.disk(centre, (radius + kEdgeWidth) * unit, palette::kEdge);
+    scene.canvas.disk(centre, (radius + kEdgeWidth) * unit, scene.colours.edge);
     scene.canvas.disk(centre, radius * unit, colour);
 }
 
 void draw_link(Scene const& scene, BodyLink const& link, Vec2 from_mm, Vec2 to_mm) {
-    Pixel const colour = tension_colour(link.load);
+    Pixel const colour = tension_colour(scene.colours, link.load);
     if (link.kind == LinkKind::hinge) {
         draw_dot(scene, from_mm, kHingeRadius, colour);
         return;
@@ -42,7 +42,7 @@ void draw_link(Scene const& scene, BodyLink const& link, Vec2 from_mm, Vec2 to_m
     float const width = std::max((link.kind == LinkKind::rod ? kRodWidth : kSpringWidth) * unit, kThinnestPx);
     Vec2 const from = scene.to_pixels(from_mm);
     Vec2 const to = scene.to_pixels(to_mm);
-    scene.canvas.line(from, to, width + 2.0F * kEdgeWidth * unit, Cap::round, palette::kEdge);
+    scene.canvas.line(from, to, width + 2.0F * kEdgeWidth * unit, Cap::round, scene.colours.edge);
     scene.canvas.line(from, to, width, Cap::round, colour);
     if (link.is_pinned) {
         draw_dot(scene, to_mm, kPinRadius, colour);
@@ -51,9 +51,9 @@ void draw_link(Scene const& scene, BodyLink const& link, Vec2 from_mm, Vec2 to_m
 
 }  // namespace
 
-Pixel tension_colour(float load) {
+Pixel tension_colour(Colours const& colours, float load) {
     float const share = std::clamp(std::abs(load), 0.0F, 1.0F);
-    return mixed(palette::kLinkAtRest, load < 0.0F ? palette::kLinkPushed : palette::kLinkPulled, share);
+    return mixed(colours.link_at_rest, load < 0.0F ? colours.link_pushed : colours.link_pulled, share);
 }
 
 void draw_body_links(Scene const& scene) {

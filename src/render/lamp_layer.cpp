@@ -20,12 +20,12 @@ constexpr float kBeamOpacity = 0.55F;
 
 void draw_sun(Scene const& scene, Vec2 centre_px) {
     float const unit = scene.point_px();
-    scene.canvas.disk(centre_px, (kSunRadius + 0.8F) * unit, palette::kEdge);
-    scene.canvas.disk(centre_px, kSunRadius * unit, palette::kLamp);
+    scene.canvas.disk(centre_px, (kSunRadius + 0.8F) * unit, scene.colours.edge);
+    scene.canvas.disk(centre_px, kSunRadius * unit, scene.colours.lamp);
     for (int i = 0; i < kRays; ++i) {
         Vec2 const outwards = direction(2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / kRays);
         scene.canvas.line(centre_px + kRayFrom * unit * outwards, centre_px + kRayTo * unit * outwards,
-                          kRayWidth * unit, Cap::round, palette::kLamp);
+                          kRayWidth * unit, Cap::round, scene.colours.lamp);
     }
 }
 
@@ -46,7 +46,7 @@ void draw_lamps(Scene const& scene, Coverage& scratch) {
         }
     }
     scratch.keep_within(scene.floor);
-    scene.canvas.cover(scratch, palette::kLampOutline);
+    scene.canvas.cover(scratch, scene.colours.lamp_outline);
 
     scratch.reset(scene.canvas.clip());
     float const across_mm = length(scene.scenery().arena.bounds.size());
@@ -57,7 +57,7 @@ void draw_lamps(Scene const& scene, Coverage& scratch) {
         }
     }
     scratch.keep_within(scene.floor);
-    scene.canvas.cover(scratch, with_opacity(palette::kLamp, kBeamOpacity));
+    scene.canvas.cover(scratch, with_opacity(scene.colours.lamp, kBeamOpacity));
 
     for (LampMark const& lamp : lamps) {
         draw_sun(scene, scene.to_pixels(lamp.centre_mm));

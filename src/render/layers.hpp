@@ -3,10 +3,14 @@
 
 #include <cstdint>
 
+#include "render/colour_key.hpp"
 #include "render/scene.hpp"
 #include "render/text.hpp"
 
 namespace pogosim {
+
+/// A quantity of robots on the floor: the density of robots, or the mean of a column. Returns what its colours mean.
+ColourKey draw_heat_map(Scene const& scene);
 
 /// Where robots have been, in the colour their head LED had there, fading into the past.
 void draw_trails(Scene const& scene);
@@ -16,6 +20,9 @@ void draw_membranes(Scene const& scene);
 
 /// The light of head LEDs on the floor around them.
 void draw_glows(Scene const& scene);
+
+/// The colour that the middle of a robot has: that of its head LED, or of its value.
+Pixel body_colour(Scene const& scene, std::uint32_t robot);
 
 /// Rigid objects with a mark where they head; lateral LEDs on the rim.
 void draw_bodies(Scene const& scene, bool lateral_leds);
@@ -31,10 +38,19 @@ void draw_lamps(Scene const& scene, Coverage& scratch);
 void draw_links(Scene const& scene);
 
 /// From -1, pushed, to 1, pulled.
-Pixel tension_colour(float load);
+Pixel tension_colour(Colours const& colours, float load);
 
 /// Links between bodies: springs and rods as lines from end to end, hinges as dots, in the colour of their tension.
 void draw_body_links(Scene const& scene);
+
+/// The ids of robots, on them, or beside them where they are small.
+void draw_labels(Scene const& scene, Text& text);
+
+/// Arrows from bodies to where they would be after a second, as they moved in the last step.
+void draw_velocities(Scene const& scene);
+
+/// Arrows from senders to robots that got a message of theirs in the last second; older ones are fainter.
+void draw_heard(Scene const& scene);
 
 /// A ring around a robot; a line along the outline of a wall or membrane.
 void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch);

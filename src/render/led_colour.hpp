@@ -28,17 +28,10 @@ constexpr bool is_lit(Rgb led) {
     return led.r != 0 || led.g != 0 || led.b != 0;
 }
 
-/// The colour of a lit LED, and `dark` for one that is off.
+/// The colour of a lit LED, and `dark` for one that is off; see Colours::of_led(), too.
 constexpr Pixel led_colour(Rgb led, Pixel dark = palette::kDarkLed) {
     auto const channel = [](std::uint8_t value, unsigned shift) { return Pixel{kLedBrightness[value]} << shift; };
     return is_lit(led) ? 0xFF000000U | channel(led.r, 16) | channel(led.g, 8) | channel(led.b, 0) : dark;
-}
-
-/// The palette's paper or edge colour, whichever stands out from a colour.
-constexpr Pixel contrast_to(Pixel colour) {
-    auto const channel = [&](unsigned shift) { return static_cast<float>(colour >> shift & 0xFFU); };
-    float const luma = 0.299F * channel(16) + 0.587F * channel(8) + 0.114F * channel(0);  // ITU-R BT.601
-    return luma > 0.25F * 255.0F ? palette::kEdge : palette::kPaper;
 }
 
 }  // namespace pogosim

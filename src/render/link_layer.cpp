@@ -17,20 +17,20 @@ constexpr std::array kFading{0.6F, 0.45F, 0.3F};  // opacity of the pieces of th
 constexpr float kHeadLength = 4.2F;               // in widths of the line
 constexpr float kHeadHalfWidth = 2.0F;
 
-Pixel colour_of(std::uint8_t emitters) {
+Pixel colour_of(Scene const& scene, std::uint8_t emitters) {
     return emitters == kAllFaces
-               ? palette::kLinkByAllEmitters
-               : palette::kLinkByEmitter[static_cast<std::size_t>(std::countr_zero(emitters)) % kMostFaces];
+               ? scene.colours.link_by_all_emitters
+               : scene.colours.link_by_emitter[static_cast<std::size_t>(std::countr_zero(emitters)) % kMostFaces];
 }
 
-void draw_two_way(Canvas& canvas, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
+void draw_two_way(Scene const& scene, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
     Vec2 const middle = 0.5F * (from + to);
-    canvas.chain_link(from, middle, width, with_opacity(colour_of(link.emitters), kOpacity));
-    canvas.chain_link(middle, to, width, with_opacity(colour_of(link.emitters_back), kOpacity));
+    scene.canvas.chain_link(from, middle, width, with_opacity(colour_of(scene, link.emitters), kOpacity));
+    scene.canvas.chain_link(middle, to, width, with_opacity(colour_of(scene, link.emitters_back), kOpacity));
 }
 
-void draw_one_way(Canvas& canvas, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
-    Pixel const colour = colour_of(link.emitters);
+void draw_one_way(Scene const& scene, Vec2 from, Vec2 to, InfraredLink const& link, float width) {
+    Pixel const colour = colour_of(scene, link.emitters);
     float const size = length(to - from);
     if (size < 1e-3F) {
         return;
@@ -41,15 +41,15 @@ void draw_one_way(Canvas& canvas, Vec2 from, Vec2 to, InfraredLink const& link, 
     Vec2 const foot = to - head * along;
     Vec2 const middle = 0.5F * (from + to);
     float const line_width = kOneWayWidth * width;
-    canvas.chain_link(from, middle, line_width, with_opacity(colour, kOpacity));
+    scene.canvas.chain_link(from, middle, line_width, with_opacity(colour, kOpacity));
     Vec2 const piece = (1.0F / static_cast<float>(kFading.size())) * (foot - middle);
     for (std::size_t i = 0; i < kFading.size(); ++i) {
         Vec2 const start = middle + static_cast<float>(i) * piece;
-        canvas.chain_link(start, start + piece, line_width, with_opacity(colour, kFading[i]));
+        scene.canvas.chain_link(start, start + piece, line_width, with_opacity(colour, kFading[i]));
     }
     Vec2 const beside{-along.y, along.x};
     std::array const corners{to, foot + half_head * beside, foot - half_head * beside};
-    canvas.polygon(corners, with_opacity(colour, kOpacity));
+    scene.canvas.polygon(corners, with_opacity(colour, kOpacity));
 }
 
 }  // namespace
@@ -64,9 +64,9 @@ void draw_links(Scene const& scene) {
             Vec2 const from = scene.to_pixels(from_mm);
             Vec2 const to = scene.to_pixels(from_mm + span);
             if (link.emitters_back != 0) {
-                draw_two_way(scene.canvas, from, to, link, width);
+                draw_two_way(scene, from, to, link, width);
             } else {
-                draw_one_way(scene.canvas, from, to, link, width);
+                draw_one_way(scene, from, to, link, width);
             }
         });
     }

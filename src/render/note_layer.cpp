@@ -2,60 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "render/layers.hpp"
-#include "render/palette.hpp"
+#include "render/plate.hpp"
 
 namespace pogosim {
 
 namespace {
 
 // In points, see Scene.
-constexpr float kFontSize = 10.5F;
-constexpr int kSmallestFontPx = 11;
-constexpr float kPad = 5.0F;
-constexpr float kMargin = 6.0F;
 constexpr float kBarWidth = 2.2F;
-constexpr float kPlateOpacity = 0.82F;
 constexpr float kSelectionWidth = 1.6F;
 constexpr float kSelectionGap = 2.5F;
-
-int font_px(Scene const& scene) {
-    return std::max(static_cast<int>(std::lround(kFontSize * scene.point_px())), kSmallestFontPx);
-}
-
-int whole(float value) {
-    return static_cast<int>(std::lround(value));
-}
-
-/// A rectangle with round corners on which text is legible, whatever is below.
-void draw_plate(Scene const& scene, PixelBox const& box) {
-    float const radius = 3.0F * scene.point_px();
-    auto const left = static_cast<float>(box.left);
-    auto const top = static_cast<float>(box.top);
-    auto const right = static_cast<float>(box.right);
-    auto const bottom = static_cast<float>(box.bottom);
-    Vec2 const centres[4] = {{right - radius, bottom - radius},
-                             {left + radius, bottom - radius},
-                             {left + radius, top + radius},
-                             {right - radius, top + radius}};
-    Polygon corners;
-    constexpr int kSteps = 6;
-    for (int corner = 0; corner < 4; ++corner) {
-        for (int i = 0; i <= kSteps; ++i) {
-            float const quarters = static_cast<float>(corner) + static_cast<float>(i) / kSteps;
-            corners.push_back(centres[corner] + radius * direction(0.5F * std::numbers::pi_v<float> * quarters));
-        }
-    }
-    scene.canvas.polygon(corners, with_opacity(palette::kPaper, kPlateOpacity));
-}
-
-bool fits(Scene const& scene, int width, int height) {
-    int const margin = whole(2.0F * kMargin * scene.point_px());
-    return width + margin <= scene.canvas.size().width_px && height + margin <= scene.canvas.size().height_px;
-}
 
 std::string length_text(double length_mm) {
     return length_mm >= 1000.0 ? fmt::format("{:g} m", length_mm / 1000.0) : fmt::format("{:g} mm", length_mm);
@@ -81,42 +40,42 @@ void draw_scale_bar(Scene const& scene, Text& text) {
     }
     float const unit = scene.point_px();
     std::string const label = length_text(length_mm);
-    int const font = font_px(scene);
+    int const font = note_font_px(scene);
     int const bar = whole(static_cast<float>(length_mm) * scene.camera.scale_px_mm);
     int const label_width = text.width(label, font);
     int const thick = std::max(whole(kBarWidth * unit), 1);
-    int const pad = whole(kPad * unit);
+    int const pad = whole(kNotePad * unit);
     int const gap = whole(2.0F * unit);
     int const width = std::max(bar, label_width) + 2 * pad;
     int const height = thick + gap + font + 2 * pad - gap;
-    if (!fits(scene, width, height)) {
+    if (!plate_fits(scene, width, height)) {
         return;
     }
-    int const left = whole(kMargin * unit);
-    int const top = size.height_px - height - whole(kMargin * unit);
+    int const left = whole(kNoteMargin * unit);
+    int const top = size.height_px - height - whole(kNoteMargin * unit);
     draw_plate(scene, {left, top, left + width, top + height});
     auto const bar_left = static_cast<float>(left + (width - bar) / 2);
     float const bar_y = static_cast<float>(top + pad) + 0.5F * static_cast<float>(thick);
     scene.canvas.line({bar_left, bar_y}, {bar_left + static_cast<float>(bar), bar_y}, static_cast<float>(thick),
-                      Cap::butt, palette::kInk);
-    text.draw(scene.canvas, label, font, left + (width - label_width) / 2, top + pad + thick + gap, palette::kInk);
+                      Cap::butt, scene.colours.ink);
+    text.draw(scene.canvas, label, font, left + (width - label_width) / 2, top + pad + thick + gap, scene.colours.ink);
 }
 
 void draw_time(Scene const& scene, Text& text) {
     float const unit = scene.point_px();
     std::string const label = fmt::format("t = {:.2f} s", scene.snapshot.time_s);
-    int const font = font_px(scene);
-    int const pad = whole(kPad * unit);
-    int const pad_above = whole(0.5F * kPad * unit);
+    int const font = note_font_px(scene);
+    int const pad = whole(kNotePad * unit);
+    int const pad_above = whole(0.5F * kNotePad * unit);
     int const width = text.width(label, font) + 2 * pad;
     int const height = font + 2 * pad_above;
-    if (!fits(scene, width, height)) {
+    if (!plate_fits(scene, width, height)) {
         return;
     }
-    int const left = scene.canvas.size().width_px - width - whole(kMargin * unit);
-    int const top = whole(kMargin * unit);
+    int const left = scene.canvas.size().width_px - width - whole(kNoteMargin * unit);
+    int const top = whole(kNoteMargin * unit);
     draw_plate(scene, {left, top, left + width, top + height});
-    text.draw(scene.canvas, label, font, left + pad, top + pad_above, palette::kInk);
+    text.draw(scene.canvas, label, font, left + pad, top + pad_above, scene.colours.ink);
 }
 
 void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch) {
@@ -136,8 +95,8 @@ void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch) 
         float const radius = scene.to_pixels(radius_mm) + kSelectionGap * scene.point_px();
         scene.for_each_image(scene.snapshot.position_mm[body], radius_mm, [&](Vec2 at_mm) {
             Vec2 const centre = scene.to_pixels(at_mm);
-            scene.canvas.ring(centre, radius + width, 1.6F * width, palette::kSelectionRim);
-            scene.canvas.ring(centre, radius, width, palette::kSelection);
+            scene.canvas.ring(centre, radius + width, 1.6F * width, scene.colours.selection_rim);
+            scene.canvas.ring(centre, radius, width, scene.colours.selection);
         });
         return;
     }
@@ -151,7 +110,7 @@ void draw_selection(Scene const& scene, std::uint32_t robot, Coverage& scratch) 
         polygons.push_back(ring);
     }
     for (auto const& [share, colour] :
-         {std::pair{3.0F, palette::kSelectionRim}, std::pair{1.0F, palette::kSelection}}) {
+         {std::pair{3.0F, scene.colours.selection_rim}, std::pair{1.0F, scene.colours.selection}}) {
         scratch.reset(scene.canvas.clip());
         for (Polygon const& polygon : polygons) {
             add_outline(scratch, scene.to_pixels(polygon), share * width);

@@ -1,8 +1,13 @@
 #include "render/painter.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <vector>
+
 #include "render/background.hpp"
+#include "render/colours.hpp"
 #include "render/layers.hpp"
-#include "render/palette.hpp"
 #include "render/text.hpp"
 
 namespace pogosim {
@@ -19,24 +24,26 @@ public:
         }
         trails_ = scene.snapshot.trails;
         camera_ = scene.camera;
+        colours_ = scene.colours;
         clip_ = scene.canvas.clip();
         if (layer_.size() != scene.canvas.size()) {
             layer_.resize(scene.canvas.size());
         }
         layer_.clear();
         layer_.clip_to(clip_);
-        draw_trails({layer_, scene.camera, scene.snapshot, scene.floor});
+        draw_trails({layer_, scene.camera, scene.snapshot, scene.floor, scene.colours});
         scene.canvas.lay_over(layer_);
     }
 
 private:
     bool is_as_before(Scene const& scene) const {
-        return trails_ == scene.snapshot.trails && camera_ == scene.camera && clip_ == scene.canvas.clip() &&
-               layer_.size() == scene.canvas.size();
+        return trails_ == scene.snapshot.trails && camera_ == scene.camera && colours_ == scene.colours &&
+               clip_ == scene.canvas.clip() && layer_.size() == scene.canvas.size();
     }
 
     std::shared_ptr<Trails const> trails_;
     Camera camera_;
+    Colours colours_;
     PixelBox clip_;
     Canvas layer_{{0, 0}};
 };
@@ -54,19 +61,44 @@ Painter::Painter() : impl_(std::make_unique<Impl>()) {}
 Painter::~Painter() = default;
 
 SnapshotParts parts_for(ViewOptions const& options) {
-    return {.light = options.light_levels, .links = options.links != LinkLayer::hidden, .trails = options.trails};
+    return {.light = options.light_levels,
+            .links = options.links != LinkLayer::hidden,
+            .trails = options.trails,
+            .velocities = options.velocities,
+            .heard = options.heard,
+            .color_by = options.color_by,
+            .heat_map = options.heat_map == kDensity ? "" : options.heat_map};
+}
+
+Camera camera_for(ViewOptions const& options, Snapshot const& snapshot, PictureSize size) {
+    Scenery const& scenery = *snapshot.scenery;
+    Camera camera = fitted(scenery.arena.bounds, size);
+    camera.scale_px_mm *= static_cast<float>(options.zoom);
+    if (options.follow) {
+        auto const robot = std::ranges::find(scenery.robot_id, *options.follow) - scenery.robot_id.begin();
+        if (robot < std::ssize(scenery.robot_id)) {
+            std::uint32_t const body = scenery.robot_body[static_cast<std::size_t>(robot)];
+            camera.centre_mm = body == kNone ? camera.centre_mm : snapshot.position_mm[body];
+        }
+    }
+    return camera;
 }
 
 void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, ViewOptions const& options) {
     canvas.clip_to(canvas.bounds());
-    impl_->background.draw(canvas, camera, snapshot, options.light_levels);
-    Scene const scene{canvas, camera, snapshot, impl_->background.floor()};
+    Colours const colours = colours_for(options);
+    impl_->background.draw(canvas, camera, snapshot, colours, options.light_levels);
+    Scene const scene{canvas, camera, snapshot, impl_->background.floor(), colours};
+    std::vector<ColourKey> keys;
 
     // Objects across a seam are drawn on both sides of it, but not beyond the arena.
     if (snapshot.scenery->periodic) {
         Box const& bounds = snapshot.scenery->arena.bounds;
         Box const seams{scene.to_pixels(bounds.min), scene.to_pixels(bounds.max)};
         canvas.clip_to(pixels_of(seams, canvas.bounds()));
+    }
+    if (options.heat_map == kDensity || snapshot.heat_map) {
+        keys.push_back(draw_heat_map(scene));
     }
     draw_glows(scene);
     if (options.links == LinkLayer::below) {
@@ -82,6 +114,15 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
         draw_headings(scene);
     }
     draw_lamps(scene, impl_->scratch);
+    if (options.heard) {
+        draw_heard(scene);
+    }
+    if (options.velocities) {
+        draw_velocities(scene);
+    }
+    if (options.labels) {
+        draw_labels(scene, impl_->text);
+    }
     if (options.selected_robot) {
         draw_selection(scene, *options.selected_robot, impl_->scratch);
     }
@@ -92,6 +133,10 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
     if (options.scale_bar) {
         draw_scale_bar(scene, impl_->text);
     }
+    if (snapshot.colours) {
+        keys.push_back(key_of(*snapshot.colours));
+    }
+    draw_keys(scene, impl_->text, keys);
     if (options.time) {
         draw_time(scene, impl_->text);
     }

@@ -13,6 +13,9 @@ namespace pogosim {
 /// The parts of a snapshot that a picture with these options needs.
 SnapshotParts parts_for(ViewOptions const& options);
 
+/// Where the picture of a snapshot is taken from: the whole arena, or the robot that is followed in the middle.
+Camera camera_for(ViewOptions const& options, Snapshot const& snapshot, PictureSize size);
+
 /// Keeps what does not change between pictures, such as the floor. Not thread-safe.
 class Painter {
 public:

@@ -87,9 +87,10 @@ void PictureWriter::work(Canvas& canvas) {
     std::optional<Painter> painter;
     std::string const error = error_of([&] { painter.emplace(); });
     while (std::optional<Numbered> const task = queue_.pop()) {
-        std::string const drawing_error =
-            !painter ? error
-                     : error_of([&] { painter->paint(canvas, format_.camera, task->job.snapshot, format_.paint); });
+        std::string const drawing_error = !painter ? error : error_of([&] {
+            Snapshot const& snapshot = task->job.snapshot;
+            painter->paint(canvas, camera_for(format_.paint, snapshot, canvas.size()), snapshot, format_.paint);
+        });
         add_to_film(*task, canvas, drawing_error);
         write_frame(*task, canvas, drawing_error);
     }

@@ -25,7 +25,6 @@ namespace pogosim {
 
 struct PictureFormat {
     PictureSize size;
-    Camera camera;
     ViewOptions paint;
 };
 

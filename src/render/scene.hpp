@@ -7,6 +7,7 @@
 
 #include "render/camera.hpp"
 #include "render/canvas.hpp"
+#include "render/colours.hpp"
 #include "render/snapshot.hpp"
 
 namespace pogosim {
@@ -16,6 +17,7 @@ struct Scene {
     Camera const& camera;
     Snapshot const& snapshot;
     Coverage const& floor;
+    Colours const& colours;
 
     Scenery const& scenery() const { return *snapshot.scenery; }
     Vec2 to_pixels(Vec2 point_mm) const { return camera.to_pixels(point_mm, canvas.size()); }

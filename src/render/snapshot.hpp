@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "geometry/arena.hpp"
@@ -51,11 +53,33 @@ struct BodyLink {
     float load = 0.0F;  // -1 to 1: tension by the breaking force, or by the largest tension; negative: it pushes
 };
 
+/// A message that another robot got.
+struct HeardMessage {
+    std::uint32_t sender = 0;  // indices of robots
+    std::uint32_t receiver = 0;
+    double time_s = 0.0;  // when it was delivered; the last one of these two
+};
+
+/// For so long, s, a picture shows that a robot heard another.
+inline constexpr float kHeardForS = 1.0F;
+
+/// A value of all robots.
+struct RobotColumn {
+    std::string name;
+    std::vector<float> values;  // NaN: it has none
+    float low = 0.0F;           // of all values so far
+    float high = 0.0F;
+};
+
 /// Which parts of a snapshot that cost time are wanted.
 struct SnapshotParts {
     bool light = false;
     bool links = false;
     bool trails = false;
+    bool velocities = false;
+    bool heard = false;
+    std::string color_by{};  // names of RobotValues; empty: none
+    std::string heat_map{};
 
     friend bool operator==(SnapshotParts const&, SnapshotParts const&) = default;
 };
@@ -72,6 +96,10 @@ struct Snapshot {
     std::vector<InfraredLink> links;        // empty: not wanted
     std::shared_ptr<Trails const> trails;   // null: not wanted
     std::vector<BodyLink> body_links{};
+    std::vector<Vec2> velocity_mm_s{};      // of bodies; empty: not wanted
+    std::vector<HeardMessage> heard{};      // in the last second; empty: not wanted
+    std::optional<RobotColumn> colours{};   // that bodies have in place of the LEDs'
+    std::optional<RobotColumn> heat_map{};  // absent: not wanted, or of the density of robots
 };
 
 }  // namespace pogosim

@@ -19,9 +19,9 @@ struct Pen {
 };
 
 /// Opacity of a trail by age: 0 at its end, 1 at the robot.
-Pen pen_at(float freshness, float unit_px, Rgb led) {
+Pen pen_at(Scene const& scene, float freshness, float unit_px, Rgb led) {
     float const opacity = 0.04F + 0.7F * freshness * freshness * freshness;
-    return {(0.5F + 0.9F * freshness) * unit_px, with_opacity(led_colour(led), opacity)};
+    return {(0.5F + 0.9F * freshness) * unit_px, with_opacity(scene.colours.of_led(led), opacity)};
 }
 
 /// Whether a piece of a trail is still too short to be drawn, or straight enough to become longer.
@@ -65,7 +65,7 @@ void draw_trails(Scene const& scene) {
                     return;
                 }
                 float const freshness = 1.0F - static_cast<float>(age) / static_cast<float>(Trails::kLength);
-                Pen const pen = pen_at(freshness, unit_px, point.led);
+                Pen const pen = pen_at(scene, freshness, unit_px, point.led);
                 scene.canvas.chain_link(drawn_to, here, pen.width_px, pen.colour);
                 drawn_to = here;
             }

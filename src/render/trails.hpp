@@ -25,6 +25,9 @@ public:
     /// Takes the positions of the robots of a world, once a step. Robots without a body, and membranes, leave no trail.
     void follow(World const& world);
 
+    /// Forgets all positions.
+    void clear() { *this = Trails(most_bytes_); }
+
     std::size_t robot_count() const { return count_.size(); }
     /// Points of one robot, at most kLength.
     std::size_t size(std::size_t robot) const { return count_[robot]; }

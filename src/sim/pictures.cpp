@@ -143,9 +143,8 @@ std::unique_ptr<FrameLock> lock_frames(Scenario const& scenario, FrameNames cons
     return lock;
 }
 
-PictureFormat picture_format(Scenario const& scenario, World const& world) {
-    PictureSize const size = picture_size(scenario);
-    return {.size = size, .camera = fitted(world.arena.bounds, size), .paint = scenario.view};
+PictureFormat picture_format(Scenario const& scenario) {
+    return {.size = picture_size(scenario), .paint = scenario.view};
 }
 
 std::unique_ptr<PictureWriter> make_writer(PictureFormat const& format, std::string const& film) {
@@ -196,7 +195,7 @@ void Pictures::check_film_speed(Scenario const& scenario) {
 }
 
 std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& world, Lighting const& lighting,
-                                         std::string const& film) {
+                                         SavedColumns const& columns, std::string const& film) {
     if (!makes_frames(scenario) && film.empty()) {
         return nullptr;
     }
@@ -205,20 +204,21 @@ std::unique_ptr<Pictures> Pictures::make(Scenario const& scenario, World const& 
         check_film_speed(scenario);
     }
     try_frames(scenario);
-    return std::unique_ptr<Pictures>(new Pictures(scenario, world, lighting, film));
+    return std::unique_ptr<Pictures>(new Pictures(scenario, world, lighting, columns, film));
 }
 
-Pictures::Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, std::string const& film)
+Pictures::Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, SavedColumns const& columns,
+                   std::string const& film)
     : scenario_(scenario),
       world_(world),
       names_(scenario.view.frames_name),
       lock_(lock_frames(scenario, names_)),
       film_(film),
-      taker_(world, lighting),
+      taker_(world, lighting, columns),
       parts_(parts_for(scenario.view)),
       frame_times_(scenario.view.save_video_period_s, 1),
       film_times_(film_period_s(scenario), 0),
-      writer_(make_writer(picture_format(scenario, world), film)) {}
+      writer_(make_writer(picture_format(scenario), film)) {}
 
 void Pictures::record_if_due() {
     if (world_.step == 0 && makes_frames(scenario_) && scenario_.view.delete_old_files) {

@@ -23,7 +23,7 @@ public:
     /// Null if the run makes no pictures. `film`: empty for none. All references outlive it. Throws ConfigError if
     /// frames or the film cannot be written, and OutOfMemory.
     static std::unique_ptr<Pictures> make(Scenario const& scenario, World const& world, Lighting const& lighting,
-                                          std::string const& film);
+                                          SavedColumns const& columns, std::string const& film);
 
     /// Throws ConfigError for frames that no run could draw. Touches no file.
     static void check_frames(Scenario const& scenario);
@@ -35,6 +35,9 @@ public:
     /// start, if old frames cannot be deleted.
     void record_if_due();
 
+    /// What the pictures show of messages. It outlives this.
+    void show_heard(HeardMessages* heard) { taker_.show_heard(heard); }
+
     /// The run goes on from the present time: pictures until then were taken before, and stay.
     void go_on();
 
@@ -43,7 +46,8 @@ public:
     bool finish();
 
 private:
-    Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, std::string const& film);
+    Pictures(Scenario const& scenario, World const& world, Lighting const& lighting, SavedColumns const& columns,
+             std::string const& film);
 
     void delete_old_frames() const;
 

@@ -17,6 +17,7 @@
 #include "process/crash_message.hpp"
 #include "sim/files_of_run.hpp"
 #include "sim/object_facts.hpp"
+#include "sim/robot_values.hpp"
 #include "world/link_places.hpp"
 
 namespace pogosim {
@@ -129,6 +130,7 @@ Recorder::Recorder(Scenario const& scenario, World const& world, Controllers& co
 std::optional<UserFailure> Recorder::open() {
     open_message_log();
     if (!output().enable_data_logging) {
+        check_shown_values(scenario_, world_, {});
         return std::nullopt;
     }
     if (auto failure = call_user_code([this] { controllers_.declare_columns(); })) {
@@ -137,6 +139,7 @@ std::optional<UserFailure> Recorder::open() {
     for (auto const& brain : brains_) {
         brain->declare_columns(export_.columns);
     }
+    check_shown_values(scenario_, world_, export_.columns);
     export_.was_set.resize(export_.columns.size(), true);
     make_data_file();
     is_opened_ = true;

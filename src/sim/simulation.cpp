@@ -108,7 +108,7 @@ Simulation::Simulation(ProgramImage program, Scenario scenario, RunOptions optio
       brains_(make_brains(world_, firmware_services())),
       physics_(make_physics(scenario_, world_, workers_)),
       recorder_(scenario_, world_, controllers_, brains_, services_.data, seed_),
-      pictures_(Pictures::make(scenario_, world_, lighting_, options_.film)),
+      pictures_(Pictures::make(scenario_, world_, lighting_, saved_columns_, options_.film)),
       stages_(options_.measure_stages) {
     if (controllers_.image().main == nullptr) {
         check_needs_no_program(world_);
@@ -140,7 +140,7 @@ std::int64_t Simulation::step_count() const {
 
 SnapshotTaker& Simulation::snapshots() {
     if (!snapshots_) {
-        snapshots_ = std::make_unique<SnapshotTaker>(world_, lighting_);
+        snapshots_ = std::make_unique<SnapshotTaker>(world_, lighting_, saved_columns_);
     }
     return *snapshots_;
 }
@@ -148,7 +148,8 @@ SnapshotTaker& Simulation::snapshots() {
 Canvas Simulation::picture(PictureSize size) {
     ViewOptions const& options = scenario_.view;
     Canvas canvas(size);
-    Painter().paint(canvas, fitted(world_.arena.bounds, size), snapshots().take(parts_for(options)), options);
+    Snapshot const snapshot = snapshots().take(parts_for(options));
+    Painter().paint(canvas, camera_for(options, snapshot, size), snapshot, options);
     return canvas;
 }
 
@@ -332,6 +333,7 @@ void Simulation::open_window() {
     try {
         WindowSetup setup = window_setup(scenario_, world_, options_.program_name);
         setup.columns = inspector().rows().columns();
+        setup.values = RobotValues(world_, saved_columns_).names();
         setup.seed = seed_;
         setup.restored = options_.restarted ? options_.restarted->window : std::nullopt;
         if (setup.restored) {
@@ -397,6 +399,7 @@ std::optional<UserFailure> Simulation::start() {
     warn_of_ambiguous_rows(scenario_, world_);
     warn_of_rounded_speeds(scenario_, world_);
     check_saving();
+    prepare_pictures();
     if (options_.from_state) {
         recorder_.go_on_behind(options_.from_state->rows);
     }
@@ -473,7 +476,7 @@ std::optional<UserFailure> Simulation::step() {
     }
     hold_switched_off(world_);
     stages_.end(Stage::robots);
-    channel_.deliver(world_, recorder_.deliveries(), &workers_);
+    deliver_messages();
     stages_.end(Stage::messages);
     broken_links_.note(world_);
     physics_->advance(world_);
@@ -491,6 +494,35 @@ std::optional<UserFailure> Simulation::step() {
     flush_logs_if_due();
     stages_.end(Stage::record);
     return failure;
+}
+
+void Simulation::deliver_messages() {
+    DeliveryLog* const logged = recorder_.deliveries();
+    DeliveryLog* const log = logged == nullptr && heard_ ? &heard_now_ : logged;
+    channel_.deliver(world_, log, &workers_);
+    if (heard_) {
+        heard_->note(world_, *log);
+    }
+}
+
+void Simulation::prepare_pictures() {
+    if (options_.window || needs_columns(scenario_.view)) {
+        keep_columns();
+    }
+    if (scenario_.view.heard) {
+        keep_heard();
+    }
+}
+
+void Simulation::keep_heard() {
+    if (heard_) {
+        return;
+    }
+    heard_ = std::make_unique<HeardMessages>();
+    if (pictures_) {
+        pictures_->show_heard(heard_.get());
+    }
+    snapshots().show_heard(heard_.get());
 }
 
 std::optional<UserFailure> Simulation::click(std::uint32_t robot) {

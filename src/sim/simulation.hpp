@@ -30,6 +30,7 @@
 #include "robot/controllers.hpp"
 #include "robot/native_program.hpp"
 #include "sim/flash_state.hpp"
+#include "sim/heard_messages.hpp"
 #include "sim/inspector.hpp"
 #include "sim/link_changes.hpp"
 #include "sim/observed_motions.hpp"
@@ -209,6 +210,9 @@ public:
     Inspector& inspector();
     void stop_inspecting();
 
+    /// From now on, pictures know which robots hear which.
+    void keep_heard();
+
     /// What robots gave for the columns of the data file at its last save, if keep_columns() was called before start().
     void keep_columns() { recorder_.keep(&saved_columns_); }
     SavedColumns const& saved_columns() const { return saved_columns_; }
@@ -272,6 +276,9 @@ private:
     FirmwareServices firmware_services();
     void fit_time_step();
     void open_window();
+    /// Keeps from the start what pictures are to show, or the window may.
+    void prepare_pictures();
+    void deliver_messages();
     void stay_open();
     FreePlaces const& free_places();
     /// An object was moved from outside.
@@ -305,6 +312,8 @@ private:
     std::unique_ptr<Pictures> pictures_;  // null: none are wanted
     StageClock stages_;
     std::unique_ptr<SnapshotTaker> snapshots_;
+    std::unique_ptr<HeardMessages> heard_;  // null: nothing shows it
+    DeliveryLog heard_now_;                 // in this step, where there is no message log
     std::unique_ptr<Inspector> inspector_;
     std::optional<FreePlaces> free_places_;  // from the first move by hand on
     Touches touches_;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "device/infrared.hpp"
 #include "render/snapshot.hpp"
 #include "world/link_places.hpp"
+#include "world/observed_motion.hpp"
 #include "world/world.hpp"
 
 namespace pogosim {
@@ -49,10 +51,31 @@ std::vector<BodyLink> drawn_links(World const& world) {
 
 }  // namespace
 
-SnapshotTaker::SnapshotTaker(World const& world, Lighting const& lighting)
-    : world_(world), lighting_(lighting), scenery_(std::make_shared<Scenery const>(make_scenery(world))) {}
+SnapshotTaker::SnapshotTaker(World const& world, Lighting const& lighting, SavedColumns const& columns)
+    : world_(world),
+      lighting_(lighting),
+      scenery_(std::make_shared<Scenery const>(make_scenery(world))),
+      values_(world, columns) {}
 
-Snapshot SnapshotTaker::take(SnapshotParts parts) {
+std::optional<RobotColumn> SnapshotTaker::column(std::string const& name) {
+    if (name.empty()) {
+        return std::nullopt;
+    }
+    RobotColumn column{.name = name, .values = values_.of(name)};
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    auto& [low, high] = ranges_.try_emplace(name, kInfinite, -kInfinite).first->second;
+    for (float const value : column.values) {
+        if (std::isfinite(value)) {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    }
+    column.low = low <= high ? low : 0.0F;
+    column.high = low <= high ? high : 0.0F;
+    return column;
+}
+
+Snapshot SnapshotTaker::take(SnapshotParts const& parts) {
     Bodies const& bodies = world_.bodies;
     Snapshot snapshot{.scenery = scenery_,
                       .step = world_.step,
@@ -64,7 +87,17 @@ Snapshot SnapshotTaker::take(SnapshotParts parts) {
                       .light = parts.light ? light() : nullptr,
                       .links = {},
                       .trails = parts.trails ? std::make_shared<Trails const>(trails_) : nullptr,
-                      .body_links = drawn_links(world_)};
+                      .body_links = drawn_links(world_),
+                      .colours = column(parts.color_by),
+                      .heat_map = column(parts.heat_map)};
+    if (parts.velocities) {
+        for (std::uint32_t body = 0; body < bodies.size(); ++body) {
+            snapshot.velocity_mm_s.push_back(observed_motion(world_, body).velocity_mm_s);
+        }
+    }
+    if (parts.heard && heard_ != nullptr) {
+        snapshot.heard = heard_->until(snapshot.time_s);
+    }
     if (world_.periodic) {
         std::ranges::transform(bodies.position_mm, snapshot.position_mm.begin(),
                                [this](Vec2 position_mm) { return wrapped(world_, position_mm); });

@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include "base/error.hpp"
+#include "base/escaped.hpp"
 #include "base/log.hpp"
 #include "pogosim/version.h"
 #include "process/crash_handler.hpp"
@@ -33,9 +35,13 @@ WindowDriver::WindowDriver(Simulation& simulation, WindowSetup const& setup)
       taker_(simulation.snapshots()),
       pacer_(setup.speed_up),
       paused_(setup.restored && setup.restored->paused),
-      window_(std::make_unique<OpenWindow>(setup)) {
+      window_(std::make_unique<OpenWindow>(setup)),
+      states_(setup.options.history_s),
+      values_(simulation.world(), simulation.saved_columns()) {
     taker_.limit_trails(kMostTrailBytes);
     taker_.follow_trails();
+    states_.keep_if_due(simulation);
+    pause_when(setup.restored ? setup.restored->options.pause_when : setup.options.pause_when);
 }
 
 WindowDriver::~WindowDriver() = default;
@@ -71,6 +77,8 @@ void WindowDriver::note_step() {
     simulation_.inspector().note_step();
     drag();
     taker_.follow_trails();
+    states_.keep_if_due(simulation_);
+    pause_if_true();
 }
 
 void WindowDriver::show_end() {
@@ -136,12 +144,13 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
     std::optional<UserFailure> failure;
     bool const needs_the_run = std::holds_alternative<Pause>(command) || std::holds_alternative<StepOnce>(command) ||
                                std::holds_alternative<ClickRobot>(command) ||
-                               std::holds_alternative<DragObject>(command);
+                               std::holds_alternative<DragObject>(command) || std::holds_alternative<GoBack>(command);
     if (shows_end_ && needs_the_run) {
         return failure;
     }
     auto const pause = [this](bool on) {
         paused_ = on;
+        why_paused_.clear();
         steps_asked_ = 0;
         pacer_.start_anew();
     };
@@ -158,6 +167,11 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
                               drag();
                           },
                           [&](DropObject const&) { dragged_.reset(); },
+                          [&](GoBack const& asked) {
+                              pause(true);
+                              failure = go_back(asked.time_s);
+                          },
+                          [&](PauseWhen const& asked) { pause_when(asked.condition); },
                           [&](Restart const& asked) {
                               restart_ = asked;
                               is_over_ = true;
@@ -176,10 +190,62 @@ std::optional<UserFailure> WindowDriver::carry_out(Command const& command) {
     return failure;
 }
 
+std::optional<UserFailure> WindowDriver::go_back(double time_s) {
+    std::optional<UserFailure> failure;
+    if (!states_.go_back(simulation_, time_s)) {
+        return failure;
+    }
+    taker_.forget_trails();
+    double const step_s = simulation_.world().time_step_s;
+    while (!failure && simulation_.world().time_s() < time_s - 0.5 * step_s && !simulation_.is_over()) {
+        failure = simulation_.step();
+        taker_.follow_trails();
+    }
+    return failure;
+}
+
+void WindowDriver::pause_when(std::string const& condition) {
+    condition_.reset();
+    wrong_condition_.clear();
+    true_of_.reset();
+    if (condition.empty()) {
+        return;
+    }
+    try {
+        condition_.emplace(condition, values_.names());
+    } catch (ConfigError const& error) {
+        wrong_condition_ = error.what();
+        log().warn("pause_when: {}", escaped(wrong_condition_));
+    }
+}
+
+void WindowDriver::pause_if_true() {
+    if (!condition_) {
+        return;
+    }
+    std::optional<std::size_t> const robot = condition_->first_robot(values_);
+    bool const has_become = robot && !true_of_;
+    true_of_ = robot;
+    if (!has_become) {
+        return;
+    }
+    paused_ = true;
+    steps_asked_ = 0;
+    std::string values;
+    for (std::string const& name : condition_->names()) {
+        values += fmt::format("{}{} = {:.6g}", values.empty() ? "" : ", ", name, values_.of(name)[*robot]);
+    }
+    why_paused_ = fmt::format("robot {}: {}", simulation_.world().robots.id[*robot], values);
+    log().info("paused at t = {:.4f} s: {}", simulation_.world().time_s(), escaped(why_paused_));
+}
+
 void WindowDriver::show_if_wanted() {
     auto const request = window_->exchange().take_request();
     if (!request) {
         return;
+    }
+    if (request->parts.heard) {
+        simulation_.keep_heard();
     }
     auto moment = std::make_shared<Moment>();
     moment->snapshot = taker_.take(request->parts);
@@ -188,7 +254,11 @@ void WindowDriver::show_if_wanted() {
                       .speed_up = pacer_.reached(),
                       .too_slow = pacer_.is_too_slow(),
                       .is_over = shows_end_,
-                      .touched = simulation_.is_touched()};
+                      .touched = simulation_.is_touched(),
+                      .earliest_s = states_.earliest_s(),
+                      .no_way_back = states_.why_none(),
+                      .why_paused = why_paused_,
+                      .wrong_condition = wrong_condition_};
     if (request->robot) {
         moment->inspection = simulation_.inspector().inspect(*request->robot);
     }

@@ -9,7 +9,10 @@
 
 #include "config/scenario.hpp"
 #include "process/crash_handler.hpp"
+#include "sim/condition.hpp"
 #include "sim/pacer.hpp"
+#include "sim/recent_states.hpp"
+#include "sim/robot_values.hpp"
 #include "sim/snapshot_taker.hpp"
 #include "sim/window_module.hpp"
 #include "view/exchange.hpp"
@@ -54,6 +57,12 @@ private:
     /// Moves the object that the user drags to the mouse.
     void drag();
     void show_if_wanted();
+    /// Takes the run back to a time, step by step from the state before it.
+    std::optional<UserFailure> go_back(double time_s);
+    /// Reads the condition to pause by.
+    void pause_when(std::string const& condition);
+    /// Pauses if the condition has become true of a robot since it was looked at last.
+    void pause_if_true();
 
     Simulation& simulation_;
     SnapshotTaker& taker_;
@@ -62,6 +71,12 @@ private:
     std::unique_ptr<OpenWindow> window_;  // null: it has gone
     std::optional<DragObject> dragged_;
     int steps_asked_ = 0;  // while paused
+    RecentStates states_;
+    RobotValues values_;
+    std::optional<Condition> condition_;
+    std::string wrong_condition_;
+    std::string why_paused_;
+    std::optional<std::size_t> true_of_;  // the robot, when it was looked at last
     bool is_over_ = false;
     bool shows_end_ = false;
     std::optional<Restart> restart_;

@@ -34,6 +34,14 @@ struct DragObject {
     Vec2 centre_mm;            // where the mean of its bodies is to be
 };
 struct DropObject {};
+/// The run goes on from this time, which was a while ago.
+struct GoBack {
+    double time_s = 0.0;
+};
+/// The run pauses when this becomes true of a robot, see Condition; empty: never.
+struct PauseWhen {
+    std::string condition;
+};
 /// The state of a window, for the one that replaces it.
 struct WindowState {
     int x_px = 0;
@@ -59,7 +67,8 @@ struct Quit {};
 struct Note {
     std::string text;
 };
-using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject, DropObject, Restart, Quit, Note>;
+using Command = std::variant<Pause, StepOnce, SetSpeedUp, ClickRobot, DragObject, DropObject, GoBack, PauseWhen,
+                             Restart, Quit, Note>;
 
 /// The parts of the next moment that the window wants.
 struct MomentRequest {
@@ -69,11 +78,15 @@ struct MomentRequest {
 
 struct RunStatus {
     bool paused = false;
-    double asked_speed_up = 1.0;  // 0: as fast as possible
-    double speed_up = 0.0;        // reached in the last second; 0: not known yet
-    bool too_slow = false;        // the machine cannot keep the asked one
-    bool is_over = false;         // its files are complete; the window is still open
-    bool touched = false;         // by the user's hand: the run is no longer that of its seed alone
+    double asked_speed_up = 1.0;    // 0: as fast as possible
+    double speed_up = 0.0;          // reached in the last second; 0: not known yet
+    bool too_slow = false;          // the machine cannot keep the asked one
+    bool is_over = false;           // its files are complete; the window is still open
+    bool touched = false;           // by the user's hand: the run is no longer that of its seed alone
+    double earliest_s = 0.0;        // to which it can go back
+    std::string no_way_back{};      // why it cannot go back at all; empty: it can
+    std::string why_paused{};       // by a condition: of which robot it is true, and its values
+    std::string wrong_condition{};  // why the condition is none; empty: it is one
 };
 
 /// One moment of the run.
@@ -103,6 +116,7 @@ struct WindowSetup {
     double time_step_s = 0.01;
     double speed_up = 1.0;             // asked for, at the start
     std::vector<std::string> columns;  // of RecordedValues
+    std::vector<std::string> values;   // of robots, for colours, heat maps and conditions, see RobotValues
     // Called in the window's thread once the run is to end, be it in a long step; says by what.
     std::function<void(char const* what)> hurry;
     std::function<RestartCheck()> check_restart;  // called in the window's thread

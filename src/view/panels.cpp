@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "render/text.hpp"
@@ -75,6 +76,8 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
     }
     if (state.seconds_since_moment > kBusyS) {
         text(kWarning, fmt::format("busy with one step for {:.0f} s", state.seconds_since_moment));
+    } else if (status.paused && !status.why_paused.empty()) {
+        text(kWarning, "paused: " + status.why_paused);
     } else if (status.paused) {
         ImGui::TextUnformatted("paused");
     } else if (status.too_slow) {
@@ -86,8 +89,43 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
     }
 }
 
+/// A choice among names, the first line standing for none of them.
+void choose(char const* label, char const* none, std::vector<std::string> const& names, std::string& chosen) {
+    ImGui::SetNextItemWidth(112.0F);
+    if (ImGui::BeginCombo(label, chosen.empty() ? none : chosen.c_str())) {
+        if (ImGui::Selectable(none, chosen.empty())) {
+            chosen.clear();
+        }
+        for (std::string const& name : names) {
+            if (ImGui::Selectable(name.c_str(), name == chosen)) {
+                chosen = name;
+            }
+        }
+        ImGui::EndCombo();
+    }
+}
+
+/// A field for the condition to pause by.
+void draw_condition(PanelState& state, std::function<void(Command const&)> const& send) {
+    constexpr std::size_t kLongest = 256;
+    std::array<char, kLongest> typed{};
+    state.condition.copy(typed.data(), kLongest - 1);
+    ImGui::TextUnformatted("pause when");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0F);
+    bool const is_entered =
+        ImGui::InputText("##condition", typed.data(), kLongest, ImGuiInputTextFlags_EnterReturnsTrue);
+    state.condition = typed.data();
+    if (is_entered || ImGui::IsItemDeactivatedAfterEdit()) {
+        send(PauseWhen{state.condition});
+    }
+    if (!state.status.wrong_condition.empty()) {
+        text(kWarning, state.status.wrong_condition);
+    }
+}
+
 /// Returns whether they are shown.
-bool draw_switches(PanelState& state) {
+bool draw_switches(PanelState& state, std::function<void(Command const&)> const& send) {
     ViewOptions& options = *state.options;
     if (!ImGui::CollapsingHeader("View")) {
         return false;
@@ -105,6 +143,24 @@ bool draw_switches(PanelState& state) {
         options.time = options.scale_bar = overlays;
     }
     ImGui::Checkbox("plot of a data column", &state.plot);
+    ImGui::Checkbox("labels", &options.labels);
+    ImGui::SameLine();
+    ImGui::Checkbox("velocities", &options.velocities);
+    ImGui::Checkbox("messages heard", &options.heard);
+    choose("colours", "LEDs", state.setup->values, options.color_by);
+    std::vector<std::string> maps{kDensity};
+    maps.insert(maps.end(), state.setup->values.begin(), state.setup->values.end());
+    choose("heat map", "none", maps, options.heat_map);
+    bool is_light = options.theme == Theme::light;
+    if (ImGui::Checkbox("light", &is_light)) {
+        options.theme = is_light ? Theme::light : Theme::dark;
+    }
+    ImGui::SameLine();
+    bool is_distinct = options.palette == PaletteKind::color_blind;
+    if (ImGui::Checkbox("colour-blind safe", &is_distinct)) {
+        options.palette = is_distinct ? PaletteKind::color_blind : PaletteKind::standard;
+    }
+    draw_condition(state, send);
     return true;
 }
 
@@ -137,14 +193,47 @@ void draw_end(PanelActions const& actions) {
     }
 }
 
+/// The time as a slider over the whole run, by which moments that are kept are looked at again.
+void draw_time_line(PanelState const& state, PanelActions const& actions) {
+    double const shown_s = state.looked_at_s.value_or(state.newest_s);
+    double const duration_s = std::max(state.setup->duration_s, state.newest_s);
+    auto value = static_cast<float>(shown_s);
+    ImGui::SetNextItemWidth(-1.0F);
+    std::string const format = fmt::format("{:.2f} of {:g} s", shown_s, state.setup->duration_s);
+    if (ImGui::SliderFloat("##time", &value, 0.0F, static_cast<float>(duration_s), format.c_str(),
+                           ImGuiSliderFlags_NoInput)) {
+        actions.look_at(static_cast<double>(value));
+    }
+}
+
+/// What can be done with a moment of the past.
+void draw_past(PanelState const& state, PanelActions const& actions) {
+    if (!state.looked_at_s) {
+        return;
+    }
+    if (ImGui::Button("Now")) {
+        actions.look_at_now();
+    }
+    ImGui::SameLine();
+    RunStatus const& status = state.status;
+    bool const is_kept = status.no_way_back.empty() && *state.looked_at_s >= status.earliest_s && !status.is_over;
+    ImGui::BeginDisabled(!is_kept);
+    if (ImGui::Button("Go on from here")) {
+        actions.send(GoBack{*state.looked_at_s});
+        actions.look_at_now();
+    }
+    ImGui::EndDisabled();
+    if (!status.no_way_back.empty()) {
+        text(fmt::format("it cannot go back: {}", status.no_way_back));
+    }
+}
+
 /// Returns whether its section "View" is open.
 bool draw_control(PanelState& state, float scale, PanelActions const& actions) {
     WindowSetup const& setup = *state.setup;
     draw_buttons(state, scale, actions);
-    double const time_s = state.moment->snapshot.time_s;
-    double const share = setup.duration_s > 0.0 ? time_s / setup.duration_s : 1.0;
-    ImGui::ProgressBar(static_cast<float>(share), {-1.0F, 0.0F},
-                       fmt::format("{:.2f} of {:g} s", time_s, setup.duration_s).c_str());
+    draw_time_line(state, actions);
+    draw_past(state, actions);
     if (state.status.is_over) {
         draw_end(actions);
     } else {
@@ -158,7 +247,7 @@ bool draw_control(PanelState& state, float scale, PanelActions const& actions) {
         ImGui::SameLine(beside_px);
     }
     ImGui::TextDisabled("F1: help");
-    return draw_switches(state);
+    return draw_switches(state, actions.send);
 }
 
 void draw_help(PanelState& state) {
@@ -223,6 +312,16 @@ void draw_question(PanelState const& state, PanelActions const& actions) {
     ImGui::End();
 }
 
+/// A key that is down for one picture.
+void press_key(ImGuiIO& io, ImGuiKey key, bool is_down) {
+#if IMGUI_VERSION_NUM >= 18700
+    io.AddKeyEvent(key, is_down);
+#else
+    io.KeyMap[key] = static_cast<int>(key);
+    io.KeysDown[key] = is_down;
+#endif
+}
+
 /// A panel at its place, if that is to be set anew. Returns whether it is open.
 bool begin_panel(char const* title, PanelBox const& box, bool in_its_place, bool* is_shown, ImGuiWindowFlags flags) {
     ImGuiCond const when = in_its_place ? ImGuiCond_Always : ImGuiCond_Appearing;
@@ -249,6 +348,10 @@ Panels::Panels(float scale) : context_(ImGui::CreateContext()), scale_(scale) {
 }
 
 Panels::~Panels() = default;
+
+bool Panels::wants_text() const {
+    return ImGui::GetIO().WantTextInput;
+}
 
 bool Panels::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
@@ -340,6 +443,9 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state, Pa
     io.MousePos = {input.mouse.point_px.x, input.mouse.point_px.y};
     io.MouseDown[0] = input.mouse.left_is_down;
     io.MouseWheel = input.wheel;
+    io.AddInputCharactersUTF8(input.text.c_str());
+    press_key(io, ImGuiKey_Backspace, input.backspace);
+    press_key(io, ImGuiKey_Enter, input.enter);
     ImGui::NewFrame();
     bool const shows_panels = state.control && has_room_for_panels({io.DisplaySize.x, io.DisplaySize.y}, scale_);
     if (shows_panels) {

@@ -26,6 +26,9 @@ struct PanelInput {
     MouseState mouse;
     float wheel = 0.0F;    // lines up
     float seconds = 0.0F;  // since the last picture
+    std::string text{};    // typed since then, UTF-8
+    bool backspace = false;
+    bool enter = false;
 };
 
 /// A restart would overwrite files: what becomes of them?
@@ -40,6 +43,8 @@ struct PanelActions {
     std::function<void(Command const&)> send;
     std::function<void()> save_picture;
     std::function<void(RestartAnswer)> answer;
+    std::function<void(double time_s)> look_at;  // the moment of that time
+    std::function<void()> look_at_now;
 };
 
 /// The state that the panels show and change.
@@ -57,6 +62,9 @@ struct PanelState {
     double seconds_since_moment = 0.0;  // the run has shown nothing new for so long
     std::string message;                // shown for a while in the middle
     std::optional<RestartQuestion> question{};
+    std::optional<double> looked_at_s{};  // the time of a moment that is past; absent: the newest is shown
+    double newest_s = 0.0;
+    std::string condition{};  // to pause by, as it is being typed
 };
 
 class Panels {
@@ -72,6 +80,9 @@ public:
 
     /// True when the mouse is over a panel, or holds a part of one: it is not for the picture then.
     bool has_mouse() const;
+
+    /// True while the user types into a field: keys are letters then.
+    bool wants_text() const;
 
 private:
     PanelRoom room_now(PanelState const& state) const;

@@ -181,6 +181,10 @@ void draw_series(PanelState const& state) {
     if (!robot.empty()) {
         draw_line(list, frame, times, robot, kRobot);
     }
+    if (state.looked_at_s && *state.looked_at_s >= times.front()) {  // the moment that is shown
+        double const at_s = std::min(*state.looked_at_s, times.back());
+        list.AddLine(frame.at(at_s, frame.value.low), frame.at(at_s, frame.value.high), kInk, 1.0F);
+    }
 }
 
 }  // namespace

@@ -94,6 +94,12 @@ void SdlWindow::show(Canvas const& canvas) {
     SDL_UpdateWindowSurface(window_.get());
 }
 
+void SdlWindow::take_text(bool on) {
+    if (on != (SDL_IsTextInputActive() == SDL_TRUE)) {
+        on ? SDL_StartTextInput() : SDL_StopTextInput();
+    }
+}
+
 void SdlWindow::toggle_full_screen() {
     write_place(windowed_);
     full_screen_ = !full_screen_;

@@ -29,6 +29,9 @@ public:
 
     void toggle_full_screen();
 
+    /// Whether keys are letters of a text, or commands.
+    void take_text(bool on);
+
     /// Writes where it is on the screen, for the next run.
     void write_place(WindowState& state) const;
 

@@ -17,6 +17,7 @@
 #include "view/column_history.hpp"
 #include "view/module.hpp"
 #include "view/panels.hpp"
+#include "view/past.hpp"
 #include "view/pointer.hpp"
 #include "view/sdl_window.hpp"
 
@@ -51,7 +52,8 @@ public:
           panels_(window_.text_scale()),
           canvas_(window_.size()),
           history_(setup.columns.size(), setup.scenery->robot_id.size()),
-          options_(setup.restored ? setup.restored->options : setup.options) {
+          options_(setup.restored ? setup.restored->options : setup.options),
+          past_(options_.history_s) {
         state_.setup = &setup_;
         state_.history = &history_;
         state_.options = &options_;
@@ -65,9 +67,12 @@ public:
         if (options_.selected_robot.value_or(0) >= setup.scenery->robot_id.size()) {
             options_.selected_robot.reset();
         }
+        state_.condition = options_.pause_when;
         reset_view();
         if (setup.restored && setup.restored->camera) {
             camera_ = *setup.restored->camera;
+        } else {
+            zoom(static_cast<float>(options_.zoom), canvas_.size().middle_px());
         }
     }
 
@@ -113,8 +118,13 @@ private:
             case SDL_QUIT:
                 quit();
                 break;
+            case SDL_TEXTINPUT:
+                typed_.text += event.text.text;
+                break;
             case SDL_KEYDOWN:
-                if (state_.question) {
+                if (panels_.wants_text()) {
+                    take_typing(event.key.keysym.sym);
+                } else if (state_.question) {
                     answer(event.key.keysym.sym);
                 } else if (auto const action =
                                action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
@@ -141,6 +151,12 @@ private:
         }
     }
 
+    /// A key while the user types into a field; letters come as SDL_TEXTINPUT.
+    void take_typing(SDL_Keycode key) {
+        typed_.backspace = typed_.backspace || key == SDLK_BACKSPACE;
+        typed_.enter = typed_.enter || key == SDLK_RETURN || key == SDLK_KP_ENTER || key == SDLK_ESCAPE;
+    }
+
     void take_window_event(SDL_WindowEvent const& event) {
         if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
             // The arena stays in the middle; when all of it was shown, all of it is.
@@ -159,7 +175,11 @@ private:
     }
 
     void carry_out(Action action, bool is_repeated) {
-        bool const repeats = action == Action::step || action == Action::slower || action == Action::faster ||
+        if (past_.empty() && (action == Action::look_back || action == Action::look_forward)) {
+            return;
+        }
+        bool const repeats = action == Action::step || action == Action::look_back || action == Action::look_forward ||
+                             action == Action::slower || action == Action::faster ||
                              (action >= Action::pan_left && action <= Action::zoom_out);
         if (is_repeated && !repeats) {
             return;  // held down: a switch would flicker
@@ -197,6 +217,33 @@ private:
                 break;
             case Action::screenshot:
                 save_screenshot();
+                break;
+            case Action::labels:
+                options_.labels = !options_.labels;
+                break;
+            case Action::velocities:
+                options_.velocities = !options_.velocities;
+                break;
+            case Action::heard:
+                options_.heard = !options_.heard;
+                break;
+            case Action::density:
+                options_.heat_map = options_.heat_map.empty() ? kDensity : "";
+                break;
+            case Action::theme:
+                options_.theme = options_.theme == Theme::dark ? Theme::light : Theme::dark;
+                break;
+            case Action::follow:
+                follow();
+                break;
+            case Action::look_back:
+                look_at(past_.neighbour_s(looked_at_s_.value_or(past_.last_s()), -1));
+                break;
+            case Action::look_forward:
+                look_at(past_.neighbour_s(looked_at_s_.value_or(past_.last_s()), 1));
+                break;
+            case Action::look_at_now:
+                looked_at_s_.reset();
                 break;
             case Action::quit:
                 quit();
@@ -254,12 +301,36 @@ private:
         // Until the simulation has answered, the panels show what was requested.
         if (auto const* const pause = std::get_if<Pause>(&command)) {
             state_.status.paused = pause->on;
+            looked_at_s_ = pause->on ? looked_at_s_ : std::nullopt;
+        } else if (std::holds_alternative<GoBack>(command)) {
+            state_.status.paused = true;
+        } else if (auto const* const condition = std::get_if<PauseWhen>(&command)) {
+            options_.pause_when = condition->condition;
         } else if (std::holds_alternative<StepOnce>(command)) {
             state_.status.paused = true;
         } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
             state_.status.asked_speed_up = speed->factor;
         }
         exchange_.send(command);
+    }
+
+    /// Looks at a moment of the past, while the run is paused.
+    void look_at(double time_s) {
+        looked_at_s_ = time_s < past_.last_s() ? std::optional(std::max(time_s, past_.first_s())) : std::nullopt;
+        if (looked_at_s_ && !state_.status.paused && !state_.status.is_over) {
+            send(Pause{true});
+        }
+    }
+
+    /// Keeps the selected robot in the middle, or no longer.
+    void follow() {
+        if (options_.follow) {
+            options_.follow.reset();
+        } else if (options_.selected_robot) {
+            options_.follow = setup_.scenery->robot_id[*options_.selected_robot];
+        } else {
+            say("select the robot to follow: click it");
+        }
     }
 
     void restart(std::uint32_t seed) {
@@ -347,9 +418,15 @@ private:
 
     bool is_fitted() const { return camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size()); }
 
-    void reset_view() { camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size()); }
+    void reset_view() {
+        options_.follow.reset();
+        camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size());
+    }
 
-    void pan(Vec2 motion_px) { camera_.centre_mm = camera_.centre_mm + (1.0F / camera_.scale_px_mm) * motion_px; }
+    void pan(Vec2 motion_px) {
+        options_.follow.reset();
+        camera_.centre_mm = camera_.centre_mm + (1.0F / camera_.scale_px_mm) * motion_px;
+    }
 
     void zoom(float factor, Vec2 fixed_px) {
         PictureSize const size = canvas_.size();
@@ -380,11 +457,11 @@ private:
         if (panels_.has_mouse() || moment_ == nullptr) {
             return;
         }
-        Snapshot const& snapshot = moment_->snapshot;
+        Snapshot const& snapshot = shown().snapshot;
         Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
         Press press;
         press.start_px = point_px;
-        press.object = object_at(snapshot, point_mm, 0.0F);
+        press.object = looked_at_s_ ? std::nullopt : object_at(snapshot, point_mm, 0.0F);
         if (press.object) {
             Object const& object = snapshot.scenery->objects[*press.object];
             press.grip_mm = centre_of(snapshot, object) - point_mm;
@@ -431,10 +508,10 @@ private:
     /// The nearest robot, or none; the same one again: none.
     void select(Vec2 point_px) {
         Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
-        auto const robot = robot_at(moment_->snapshot, point_mm, kPickMarginPx / camera_.scale_px_mm);
+        auto const robot = robot_at(shown().snapshot, point_mm, kPickMarginPx / camera_.scale_px_mm);
         bool const again = robot == options_.selected_robot;
         options_.selected_robot = again ? std::nullopt : robot;
-        if (options_.selected_robot) {
+        if (options_.selected_robot && !looked_at_s_) {
             send(ClickRobot{*options_.selected_robot});
         }
     }
@@ -468,10 +545,12 @@ private:
             pictures_to_draw_ = kPicturesAfterInput;  // panels settle
         }
         moment_ = std::make_unique<Moment>(*newest);
+        past_.add(*newest);
         // Only the user changes these two, and the moment may be from before the simulation has taken notice.
         RunStatus const asked = state_.status;
         state_.status = newest->status;
-        state_.status.paused = asked.paused;
+        bool const was_stopped = newest->status.paused && !newest->status.why_paused.empty();
+        state_.status.paused = asked.paused || was_stopped;
         state_.status.asked_speed_up = asked.asked_speed_up;
         Snapshot& snapshot = moment_->snapshot;
         if (snapshot.trails != nullptr || !options_.trails) {
@@ -479,7 +558,20 @@ private:
             trails_time_s_ = snapshot.time_s;
         }
         snapshot.trails = trails_;
-        state_.moment = moment_.get();
+    }
+
+    /// The moment that is looked at, or the newest; there must be one.
+    Moment const& shown() const { return looked_at_ ? *looked_at_ : *moment_; }
+
+    /// Finds the moment that is to be drawn.
+    void choose_moment() {
+        looked_at_ = looked_at_s_ && !past_.empty() ? past_.at(*looked_at_s_) : nullptr;
+        state_.looked_at_s = looked_at_s_;
+        state_.newest_s = moment_->snapshot.time_s;
+        state_.moment = &shown();
+        if (options_.follow) {
+            camera_.centre_mm = camera_for(options_, shown().snapshot, canvas_.size()).centre_mm;
+        }
     }
 
     bool message_is_over(Clock::time_point now) const { return !state_.message.empty() && now > message_until_; }
@@ -492,15 +584,23 @@ private:
             state_.message.clear();
         }
         canvas_.resize(window_.size());
-        painter_.paint(canvas_, camera_, moment_->snapshot, options_);
+        choose_moment();
+        painter_.paint(canvas_, camera_, shown().snapshot, options_);
         PanelInput const input{.mouse = mouse_.take(),
                                .wheel = std::exchange(wheel_, 0.0F),
-                               .seconds = std::chrono::duration<float>(now - last_drawn_).count()};
+                               .seconds = std::chrono::duration<float>(now - last_drawn_).count(),
+                               .text = std::move(typed_.text),
+                               .backspace = typed_.backspace,
+                               .enter = typed_.enter};
+        typed_ = {};
         last_drawn_ = now;
         panels_.draw(canvas_, input, state_,
                      {.send = [this](Command const& command) { send(command); },
                       .save_picture = [this] { picture_is_asked_ = true; },
-                      .answer = [this](RestartAnswer asked) { answer(asked); }});
+                      .answer = [this](RestartAnswer asked) { answer(asked); },
+                      .look_at = [this](double time_s) { look_at(time_s); },
+                      .look_at_now = [this] { looked_at_s_.reset(); }});
+        window_.take_text(panels_.wants_text());
         window_.show(canvas_);
         if (std::exchange(picture_is_asked_, false)) {
             save_screenshot();
@@ -543,6 +643,10 @@ private:
     Camera camera_;
     ColumnHistory history_;
     ViewOptions options_;
+    Past past_;
+    std::optional<double> looked_at_s_;        // absent: the newest moment is shown
+    std::shared_ptr<Moment const> looked_at_;  // of that time
+    PanelInput typed_;                         // since the last picture
     PanelState state_;
     MouseStates mouse_;
     float wheel_ = 0.0F;  // lines up since the last picture, over a panel

@@ -37,6 +37,19 @@ void write(std::byte* place, CellValue const& cell) {
     std::memcpy(place, &number, sizeof(number));
 }
 
+template <class Number>
+double read(std::byte const* place) {
+    Number number{};
+    std::memcpy(&number, place, sizeof(number));
+    return static_cast<double>(number);
+}
+
+double read_half(std::byte const* place) {
+    std::uint16_t half = 0;
+    std::memcpy(&half, place, sizeof(half));
+    return from_half(half);
+}
+
 void write_half(std::byte* place, CellValue const& cell) {
     std::uint16_t const half = to_half(number_in<double>(cell));
     std::memcpy(place, &half, sizeof(half));
@@ -99,7 +112,7 @@ CellValue refuse_text(ColumnSpec const& column, double /*value*/) {
 
 template <class Integer>
 constexpr ColumnTypeRow row_of_whole(ColumnType type, std::string_view name, char const* name_in_array) {
-    return {type, name, name_in_array, sizeof(Integer), write<Integer>, whole<Integer>};
+    return {type, name, name_in_array, sizeof(Integer), write<Integer>, read<Integer>, whole<Integer>};
 }
 
 constexpr std::array kTypes{
@@ -107,11 +120,11 @@ constexpr std::array kTypes{
     row_of_whole<std::int16_t>(ColumnType::int16, "int16", "<i2"),
     row_of_whole<std::int32_t>(ColumnType::int32, "int32", "<i4"),
     row_of_whole<std::int64_t>(ColumnType::int64, "int64", "<i8"),
-    ColumnTypeRow{ColumnType::float16, "float16", "<f2", sizeof(std::uint16_t), write_half, real16},
-    ColumnTypeRow{ColumnType::float32, "float", "<f4", sizeof(float), write<float>, real32},
-    ColumnTypeRow{ColumnType::float64, "double", "<f8", sizeof(double), write<double>, real64},
-    ColumnTypeRow{ColumnType::boolean, "bool", "|b1", sizeof(bool), write<bool>, truth},
-    ColumnTypeRow{ColumnType::text, "string", "text", 0, nullptr, refuse_text},
+    ColumnTypeRow{ColumnType::float16, "float16", "<f2", sizeof(std::uint16_t), write_half, read_half, real16},
+    ColumnTypeRow{ColumnType::float32, "float", "<f4", sizeof(float), write<float>, read<float>, real32},
+    ColumnTypeRow{ColumnType::float64, "double", "<f8", sizeof(double), write<double>, read<double>, real64},
+    ColumnTypeRow{ColumnType::boolean, "bool", "|b1", sizeof(bool), write<bool>, read<bool>, truth},
+    ColumnTypeRow{ColumnType::text, "string", "text", 0, nullptr, nullptr, refuse_text},
 };
 
 }  // namespace

@@ -60,6 +60,9 @@ struct ColumnTypeRow {
     /// Writes a cell into an array of this type; one without a value as NaN, 0 or false. Null for text.
     void (*write)(std::byte* place, CellValue const& cell);
 
+    /// The number at a place in such an array. Null for text.
+    double (*read)(std::byte const* place);
+
     /// A number as a cell. Throws ConfigError for one that this type does not have.
     CellValue (*cell_of)(ColumnSpec const& column, double value);
 };

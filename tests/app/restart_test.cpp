@@ -38,6 +38,17 @@ Restart everything_changed() {
                                    .lateral_leds = false,
                                    .light_levels = true,
                                    .trails = true,
+                                   .labels = true,
+                                   .velocities = true,
+                                   .heard = true,
+                                   .color_by = "two: words",
+                                   .heat_map = kDensity,
+                                   .theme = Theme::light,
+                                   .palette = PaletteKind::color_blind,
+                                   .follow = 12,
+                                   .zoom = 2.5,
+                                   .history_s = 7.0,
+                                   .pause_when = "x > 1 and 'y' < 2",
                                    .selected_robot = 41}};
     return {.seed = 4294967295U, .window = window};
 }
@@ -81,13 +92,7 @@ void expect_equal(WindowState const& a, WindowState const& b) {
     EXPECT_EQ(a.plot, b.plot);
     EXPECT_EQ(a.column, b.column);
     EXPECT_EQ(a.speed_up, b.speed_up);
-    EXPECT_EQ(a.options.time, b.options.time);
-    EXPECT_EQ(a.options.scale_bar, b.options.scale_bar);
-    EXPECT_EQ(a.options.links, b.options.links);
-    EXPECT_EQ(a.options.lateral_leds, b.options.lateral_leds);
-    EXPECT_EQ(a.options.light_levels, b.options.light_levels);
-    EXPECT_EQ(a.options.trails, b.options.trails);
-    EXPECT_EQ(a.options.selected_robot, b.options.selected_robot);
+    EXPECT_EQ(a.options, b.options);
 }
 
 /// This program, as it was started.

@@ -11,7 +11,7 @@ namespace {
 constexpr int kInfinityBits = 0x7C00;
 
 /// Value of a half-precision number, from the definition of the format.
-double from_half(int bits) {
+double by_definition(int bits) {
     int const exponent = (bits >> 10) & 0x1F;
     int const mantissa = bits & 0x3FF;
     double const sign = (bits & 0x8000) != 0 ? -1.0 : 1.0;
@@ -23,9 +23,9 @@ double from_half(int bits) {
 
 TEST(Half, EachOfThe65536NumbersComesBackAsItself) {
     for (int bits = 0; bits <= 0xFFFF; ++bits) {
-        double const value = from_half(bits);
+        double const value = by_definition(bits);
         if (std::isnan(value)) {
-            EXPECT_TRUE(std::isnan(from_half(to_half(value)))) << bits;
+            EXPECT_TRUE(std::isnan(by_definition(to_half(value)))) << bits;
         } else {
             EXPECT_EQ(to_half(value), bits) << value;
         }
@@ -36,8 +36,8 @@ TEST(Half, HalfwayBetweenNeighboursGoesToTheEvenOneAndElseToTheNearest) {
     // The number after the largest finite one would be 65536; there stands infinity.
     for (int low = 0; low < kInfinityBits; ++low) {
         int const high = low + 1;
-        double const value_high = high == kInfinityBits ? 65536.0 : from_half(high);
-        double const middle = (from_half(low) + value_high) / 2.0;
+        double const value_high = high == kInfinityBits ? 65536.0 : by_definition(high);
+        double const middle = (by_definition(low) + value_high) / 2.0;
         int const even = low % 2 == 0 ? low : high;
         EXPECT_EQ(to_half(middle), even) << middle;
         EXPECT_EQ(to_half(std::nextafter(middle, 0.0)), low) << middle;
@@ -55,10 +55,20 @@ TEST(Half, TooLargeBecomesInfinityAndTooSmallBecomesZeroOfTheSameSign) {
 }
 
 TEST(Half, NanStaysNanWithItsSign) {
-    EXPECT_TRUE(std::isnan(from_half(to_half(std::nan("")))));
-    EXPECT_TRUE(std::isnan(from_half(to_half(std::copysign(std::nan("1"), -1.0)))));
-    EXPECT_TRUE(std::isnan(from_half(to_half(std::numeric_limits<float>::signaling_NaN()))));
+    EXPECT_TRUE(std::isnan(by_definition(to_half(std::nan("")))));
+    EXPECT_TRUE(std::isnan(by_definition(to_half(std::copysign(std::nan("1"), -1.0)))));
+    EXPECT_TRUE(std::isnan(by_definition(to_half(std::numeric_limits<float>::signaling_NaN()))));
 }
 
 }  // namespace
+
+TEST(Half, BitsAreTheNumberOfTheDefinition) {
+    for (int bits = 0; bits < 0x10000; ++bits) {
+        double const expected = by_definition(bits);
+        double const value = from_half(static_cast<std::uint16_t>(bits));
+        EXPECT_TRUE(std::isnan(expected) ? std::isnan(value) : value == expected) << bits;
+        EXPECT_EQ(std::signbit(value), std::isnan(expected) ? std::signbit(value) : (bits & 0x8000) != 0) << bits;
+    }
+}
+
 }  // namespace pogosim

@@ -6,12 +6,14 @@ import json
 import re
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pogosim import swarm_picture
 
 PROJECT = Path(__file__).resolve().parents[2]
 PALETTE = PROJECT / "python" / "pogosim" / "palette.json"
+COLOURS: dict[str, Any] = json.loads(PALETTE.read_text(encoding="utf-8"))
 
 
 def header_of(palette: Path, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -28,7 +30,18 @@ def header_of(palette: Path, folder: Path) -> subprocess.CompletedProcess[str]:
 def test_header_has_every_colour_of_the_palette(tmp_path: Path) -> None:
     assert header_of(PALETTE, tmp_path).returncode == 0
     header = (tmp_path / "palette.hpp").read_text(encoding="utf-8")
-    for name, value in json.loads(PALETTE.read_text(encoding="utf-8")).items():
+    own = re.sub(r"^namespace \w+ \{$.*?^\}$", "", header, flags=re.MULTILINE | re.DOTALL)
+    check_constants(own, {name: value for name, value in COLOURS.items() if not isinstance(value, dict)})
+    for theme, colours in COLOURS.items():
+        if isinstance(colours, dict):
+            inner = re.search(rf"^namespace {theme} \{{$(.*?)^\}}$", header, re.MULTILINE | re.DOTALL)
+            assert inner, theme
+            check_constants(inner.group(1), colours)
+
+
+def check_constants(header: str, colours: dict[str, Any]) -> None:
+    """Check that a header, or a namespace in it, has these colours."""
+    for name, value in colours.items():
         constant = "k" + "".join(word.capitalize() for word in name.split("_"))
         line = re.search(rf"^.* {constant}\b.*;$", header, re.MULTILINE)
         assert line, name

@@ -295,8 +295,8 @@ TEST(BodyLink, GoesFromEndToEndInTheColourOfItsTension) {
 }
 
 TEST(BodyLink, ColoursOfTensionsAreBetweenThoseOfTheirLimits) {
-    EXPECT_EQ(tension_colour(0.0F), palette::kLinkAtRest);
-    Pixel const half = tension_colour(0.5F);
+    EXPECT_EQ(tension_colour({}, 0.0F), palette::kLinkAtRest);
+    Pixel const half = tension_colour({}, 0.5F);
     EXPECT_NEAR(static_cast<float>(half >> 8U & 0xFFU),
                 0.5F * static_cast<float>((palette::kLinkAtRest >> 8U & 0xFFU) + (palette::kLinkPulled >> 8U & 0xFFU)),
                 1.0F);
@@ -310,7 +310,7 @@ TEST(BodyLink, IsDrawnAboveRobotsAndBelowTheirHeadings) {
     snapshot.body_links = {{.from_mm = {500, 500}, .to_mm = {600, 500}, .load = 1.0F}};
     Canvas const canvas = painted(snapshot, kNothingWritten, {1600, 1600});
     EXPECT_EQ(at_mm(canvas, {502, 500}), palette::kLinkPulled);
-    EXPECT_EQ(at_mm(canvas, {515, 500}), contrast_to(led_colour({})));  // where it heads
+    EXPECT_EQ(at_mm(canvas, {515, 500}), Colours{}.contrast_to(led_colour({})));  // where it heads
     EXPECT_EQ(at_mm(canvas, {540, 500}), palette::kLinkPulled);
 }
 

@@ -20,9 +20,10 @@ namespace {
 using testing::add_robot;
 using testing::square_world;
 
-PictureFormat small_format(World const& world) {
-    PictureSize const size{120, 90};
-    return {.size = size, .camera = fitted(world.arena.bounds, size), .paint = {}};
+constexpr PictureSize kSmall{120, 90};
+
+PictureFormat small_format() {
+    return {.size = kSmall, .paint = {}};
 }
 
 Snapshot snapshot_of(World const& world, std::shared_ptr<Scenery const> const& scenery) {
@@ -72,7 +73,7 @@ std::map<std::string, std::string> files_in(TemporaryFolder const& folder) {
 std::map<std::string, std::string> frames_with(unsigned threads) {
     TemporaryFolder const folder;
     MovingRobot robot(folder.path());
-    PictureWriter writer(small_format(robot.world()), threads, nullptr);
+    PictureWriter writer(small_format(), threads, nullptr);
     robot.add_frames(writer, 40);
     PictureErrors const& errors = writer.finish();
     EXPECT_EQ(errors.frames, 40);
@@ -93,7 +94,7 @@ TEST(PictureWriter, CompletesItsFramesWhenItGoes) {
     TemporaryFolder const folder;
     MovingRobot robot(folder.path());
     {
-        PictureWriter writer(small_format(robot.world()), 2, nullptr);
+        PictureWriter writer(small_format(), 2, nullptr);
         robot.add_frames(writer, 10);
     }
     EXPECT_EQ(folder.names().size(), 10U);
@@ -104,7 +105,7 @@ TEST(PictureWriter, NamesTheFirstFrameThatIsLostAndWritesTheOthers) {
     std::filesystem::create_directory(folder / "3.png");
     std::filesystem::create_directory(folder / "7.png");
     MovingRobot robot(folder.path());
-    PictureWriter writer(small_format(robot.world()), 3, nullptr);
+    PictureWriter writer(small_format(), 3, nullptr);
     robot.add_frames(writer, 10);
     PictureErrors const& errors = writer.finish();
     EXPECT_EQ(errors.frames, 10);

@@ -122,7 +122,7 @@ protected:
             }
         };
         options.window = true;
-        simulation_ = std::make_unique<Simulation>(test_program(), scenario_, std::move(options));
+        simulation_ = std::make_unique<Simulation>(std::move(image_), scenario_, std::move(options));
         ExitCode const code = simulation_->run();
         // A short run may be over before the thread of its window calls the script.
         wait_for("the run's window", [&] { return is_shown->load(); });
@@ -130,11 +130,88 @@ protected:
     }
 
     Scenario scenario_ = square_scene({robot_at({200, 500})});
+    ProgramImage image_ = test_program();
     std::unique_ptr<Simulation> simulation_;
 };
 
 /// The time is a thousand years away.
 constexpr double kAlmostStill = 1e-12;
+
+void make_steps(Exchange& exchange, int count) {
+    std::int64_t const start = look(exchange)->snapshot.step;
+    for (int i = 0; i < count; ++i) {
+        exchange.send(StepOnce{});
+    }
+    look_for_step(exchange, start + count);
+}
+
+TEST_F(WindowDriver, RunGoesBackAndOnFromThereAsItDidBefore) {
+    // What user code keeps in this test program itself cannot be copied.
+    ObjectSpec spec = article_robot();
+    spec.robot->brain = ScriptSpec{.entries = {{.time_s = 0.0, .motors = {1023, 1000, std::nullopt}}}};
+    scenario_.objects = {robot_at({200, 500}, spec)};
+    image_ = ProgramImage();
+    EXPECT_EQ(run_with([](Exchange& exchange) {
+                  exchange.send(Pause{true});
+                  std::vector<std::vector<Vec2>> places;
+                  std::int64_t const start = look(exchange)->snapshot.step;
+                  for (int i = 0; i < 60; ++i) {
+                      make_steps(exchange, 1);
+                      places.push_back(look(exchange)->snapshot.position_mm);
+                  }
+                  double const now_s = look(exchange)->snapshot.time_s;
+                  SharedMoment moment = look(exchange);
+                  EXPECT_EQ(moment->status.no_way_back, "");
+                  EXPECT_LE(moment->status.earliest_s, moment->snapshot.time_s);
+                  double const step_s = now_s / static_cast<double>(start + 60);
+                  exchange.send(GoBack{static_cast<double>(start + 10) * step_s});
+                  moment = look(exchange);
+                  EXPECT_EQ(moment->snapshot.step, start + 10);
+                  EXPECT_TRUE(moment->status.paused);
+                  EXPECT_EQ(moment->snapshot.position_mm, places[9]);
+                  for (int i = 10; i < 60; ++i) {
+                      make_steps(exchange, 1);
+                      EXPECT_EQ(look(exchange)->snapshot.position_mm, places[static_cast<std::size_t>(i)]);
+                  }
+              }),
+              ExitCode::done);
+}
+
+TEST_F(WindowDriver, RunThatWritesADataFileSaysThatItCannotGoBack) {
+    TemporaryFolder const folder;
+    scenario_.output.enable_data_logging = true;
+    scenario_.output.data_filename = (folder.path() / "run.feather").string();
+    EXPECT_EQ(run_with([](Exchange& exchange) {
+                  exchange.send(Pause{true});
+                  make_steps(exchange, 3);
+                  SharedMoment const moment = look(exchange);
+                  EXPECT_EQ(moment->status.no_way_back, "it writes a data file (enable_data_logging: false)");
+                  exchange.send(GoBack{0.0});
+                  EXPECT_EQ(look(exchange)->snapshot.step, moment->snapshot.step);
+              }),
+              ExitCode::done);
+}
+
+TEST_F(WindowDriver, RunPausesWhenAConditionBecomesTrueOfARobot) {
+    scenario_.view.pause_when = "x > 300";
+    EXPECT_EQ(
+        run_with([](Exchange& exchange) {
+            SharedMoment moment = look_for(exchange, "the pause", [](Moment const& one) { return one.status.paused; });
+            EXPECT_GT(moment->snapshot.position_mm[0].x, 300.0F);
+            EXPECT_LT(moment->snapshot.position_mm[0].x, 310.0F);
+            EXPECT_EQ(moment->status.why_paused.substr(0, 14), "robot 0: x = 3");
+            exchange.send(Pause{false});  // it stays true: there is no other pause
+            look_for(exchange, "the robot's way",
+                     [](Moment const& one) { return one.snapshot.position_mm[0].x > 400.0F; });
+            exchange.send(PauseWhen{"x > 1e9 or sped < 1"});
+            moment = look_for(exchange, "the message",
+                              [](Moment const& one) { return !one.status.wrong_condition.empty(); });
+            EXPECT_NE(moment->status.wrong_condition.find("did you mean 'speed'?"), std::string::npos);
+            exchange.send(PauseWhen{""});
+            look_for(exchange, "no message", [](Moment const& one) { return one.status.wrong_condition.empty(); });
+        }),
+        ExitCode::done);
+}
 
 TEST_F(WindowDriver, PausedRunMakesTheStepsAskedForAndNoOther) {
     EXPECT_EQ(run_with([](Exchange& exchange) {

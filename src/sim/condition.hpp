@@ -1,0 +1,37 @@
+// A condition on the values of robots, such as "speed < 1 and heard > 10", for breakpoints.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/robot_values.hpp"
+
+namespace pogosim {
+
+struct ConditionNode;
+
+class Condition {
+public:
+    /// `known`: names of values. From the weakest to the strongest: or; and; not; one of < <= > >= == !=; + -; * /; a
+    /// minus; numbers, names, abs(x), and what is in brackets. Throws ConfigError, which says where the text is wrong.
+    Condition(std::string_view text, std::vector<std::string> const& known);
+    ~Condition();
+    Condition(Condition&&) noexcept;
+    Condition& operator=(Condition&&) noexcept;
+
+    /// The first robot of which it is true. A comparison with a value that is not there is false.
+    std::optional<std::size_t> first_robot(RobotValues const& values) const;
+
+    /// The names in it, each once.
+    std::vector<std::string> const& names() const { return names_; }
+
+private:
+    std::vector<std::string> names_;
+    std::unique_ptr<ConditionNode const> root_;
+};
+
+}  // namespace pogosim
