@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
@@ -37,14 +38,21 @@ def new_figure(columns: int = 1, rows: int = 1, width: float = 6.0, height: floa
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PDF and PNG; parent folders are made. The path may have one of these suffixes or none."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Panels are laid out once, not for each format: that takes longer than drawing them.
-    if (engine := figure.get_layout_engine()) is not None:
-        engine.execute(figure)
-        figure.set_layout_engine("none")
+    lay_out(figure)
     stem = path.stem if path.suffix in METADATA else path.name  # arenas may have dots in their names
     for suffix in FORMATS:
         with any_characters():
             figure.savefig(path.with_name(stem + suffix), dpi=DPI, metadata=METADATA[suffix])
+
+
+def lay_out(figure: Figure) -> None:
+    """Put the panels of a figure where they fit, once for all formats: that takes longer than drawing them."""
+    if (engine := figure.get_layout_engine()) is None:
+        return
+    engine.execute(figure)
+    # Without an engine, nothing is drawn on trial before each format. "none" would be an engine that does nothing.
+    with mpl.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
 
 
 def colours_of(names: Sequence[str]) -> dict[str, Any]:
