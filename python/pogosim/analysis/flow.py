@@ -13,7 +13,7 @@ from pogosim.analysis.snapshots import Integers, blocks_of, snapshots_of
 from pogosim.analysis.trajectories import Run, Trajectories
 
 MIN_ROBOTS = 4
-MAX_PAIRS = 1_000_000  # of robots and cells, in a block of times
+MAX_PAIRS = 200_000  # of robots and cells, in a block of times: what fits into the processor's cache
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class VelocityField:
     Rotation is positive from the x axis towards the y axis: clockwise as seen, as the column `angle` counts.
     """
 
-    velocity: Floats  # (rows, columns, 2), mm/s
-    gradient: Floats  # (rows, columns, 2, 2), 1/s; [..., a, b] is the derivative of v_a by b
+    velocity: Floats  # (rows, columns, 2), or (M, 2) of M cells; mm/s
+    gradient: Floats  # (rows, columns, 2, 2) or (M, 2, 2), 1/s; [..., a, b] is the derivative of v_a by b
 
     @property
     def vorticity(self) -> Floats:
@@ -64,6 +64,21 @@ class VelocityField:
         return np.asarray(normal**2 + shear**2 - self.vorticity**2)
 
 
+@dataclass(frozen=True)
+class KnownCells:
+    """The velocity fields at a block of times, where they are known: M cells of all times."""
+
+    times: slice  # of the run
+    time: Integers  # (M,), number of the time in the block, increasing
+    cell: Integers  # (M,), row * columns + column
+    field: VelocityField  # of M cells
+
+    @property
+    def length(self) -> int:
+        """Number of times."""
+        return int(self.times.stop - self.times.start)
+
+
 def flow_bounds(run: Run) -> tuple[Floats, Floats]:
     """Return the corners of the grid: those of the arena, or of all positions if the arena is not known."""
     if run.arena.polygons:
@@ -92,15 +107,23 @@ def velocity_fields(
     Yields:
         Time in s, and the field.
     """
-    for times, fields in blocks_of_fields(run, velocity, radius_mm, shape):
-        for time, value, gradient in zip(run.time_s[times], fields.velocity, fields.gradient, strict=True):
-            yield float(time), VelocityField(value, gradient)
+    columns, rows = shape
+    for known in blocks_of_fields(run, velocity, radius_mm, shape):
+        value = np.full((known.length, rows * columns, 2), np.nan)
+        gradient = np.full((known.length, rows * columns, 2, 2), np.nan)
+        value[known.time, known.cell] = known.field.velocity
+        gradient[known.time, known.cell] = known.field.gradient
+        for number, time in enumerate(run.time_s[known.times]):
+            yield (
+                float(time),
+                VelocityField(value[number].reshape(rows, columns, 2), gradient[number].reshape(rows, columns, 2, 2)),
+            )
 
 
 def blocks_of_fields(
     run: Trajectories, velocity: Floats, radius_mm: float, shape: tuple[int, int] = (64, 64)
-) -> Iterator[tuple[slice, VelocityField]]:
-    """Yield blocks of times, and the fields of `velocity_fields` at these, with times as their first axis."""
+) -> Iterator[KnownCells]:
+    """Yield the fields of `velocity_fields` at blocks of times, without the cells where they are not known."""
     grid = Grid(flow_bounds(run), shape)
     use = run.is_there & np.isfinite(velocity).all(axis=2)
     use &= (use.sum(axis=1) >= MIN_ROBOTS)[:, None]
@@ -110,7 +133,7 @@ def blocks_of_fields(
         position, own = run.position_mm[times][time, robot], velocity[times][time, robot]
         images = images_near(run.arena, position, radius_mm)
         time, position, own = time[images.robot], position[images.robot] + images.shift_mm, own[images.robot]
-        yield times, fitted(grid, times.stop - times.start, time, position, own, run.arena.period_mm, radius_mm)
+        yield fitted(grid, times, time, position, own, run.arena.period_mm, radius_mm)
 
 
 @dataclass(frozen=True)
@@ -130,6 +153,11 @@ class Grid:
         low, high = self.bounds_mm
         count = self.shape[axis]
         return np.asarray(low[axis] + (high - low)[axis] * (np.arange(count) + 0.5) / count)
+
+    def centres_of(self, cell: Integers) -> Floats:
+        """Return x and y of the centres of cells, given row * columns + column, modulo their number. Shape (2, n)."""
+        row, column = np.divmod(cell % self.cells, self.shape[0])
+        return np.stack([self.centres_mm(0)[column], self.centres_mm(1)[row]])
 
     def window(self, axis: int, place_mm: Floats, radius_mm: float) -> tuple[Integers, Floats]:
         """Return the columns (axis 0) or rows (axis 1) that may be within the radius, and the way from them to a place.
@@ -191,26 +219,23 @@ def images_near(arena: Arena, position_mm: Floats, radius_mm: float) -> Images:
 
 def fitted(
     grid: Grid,
-    times: int,
+    times: slice,
     time: Integers,
     position_mm: Floats,
     velocity: Floats,
     period_mm: Floats | None,
     radius: float,
-) -> VelocityField:
+) -> KnownCells:
     """Fit the velocity fields of several times; see `velocity_fields`.
 
     Args:
         grid: Where to.
-        times: How many.
-        time: Number of the time of each robot, shape (n,).
+        times: Which.
+        time: Number of the time of each robot among these, shape (n,).
         position_mm: Shape (n, 2), finite; images across periodic borders are robots too.
         velocity: Shape (n, 2), mm/s, finite.
         period_mm: Size of a periodic arena, where the nearest image counts.
         radius: How far robots count, mm.
-
-    Returns:
-        Arrays of shapes (times, rows, columns, ...).
     """
     columns, rows = grid.shape
     # Around the middle of the grid, squares stay small, and so do rounding errors.
@@ -222,39 +247,43 @@ def fitted(
     square = (y**2)[:, :, None] + (x**2)[:, None, :]
     near = square <= radius**2
     first = ((time[:, None] * rows + row) * columns).astype(np.int32)  # sizes of blocks keep them small
-    cell = (first[:, :, None] + column.astype(np.int32)[:, None, :])[near]
+    number = (first[:, :, None] + column.astype(np.int32)[:, None, :])[near]
     weight = square[near]
     weight *= -1.0 / radius**2
     weight += 1.0
     weight *= weight
     # Sums over the robots around each cell are the product of a sparse matrix of weights and what robots have.
     p, v = position_mm - middle, velocity
-    of_robots = np.column_stack(
-        [np.ones(len(p)), p, v, p[:, 0] ** 2, p[:, 0] * p[:, 1], p[:, 1] ** 2]
-        + [v[:, a] * p[:, b] for a in (0, 1) for b in (0, 1)]
-    )
+    of_places = [np.ones(len(p)), p, p[:, 0] ** 2, p[:, 0] * p[:, 1], p[:, 1] ** 2]
+    of_velocities = [v, *(v[:, a] * p[:, b] for a in (0, 1) for b in (0, 1))]
     starts = np.concatenate([[0], np.cumsum(np.count_nonzero(near, axis=(1, 2)))])
-    size = times * rows * columns
-    matrix = sparse.csc_array((weight, cell, starts), shape=(size, len(p)))
-    value, gradient = np.full((size, 2), np.nan), np.full((size, 2, 2), np.nan)
-    enough = np.flatnonzero(np.bincount(cell, minlength=size) >= MIN_ROBOTS)
-    sums = (matrix @ of_robots)[enough].T
-    lines, across = np.divmod(enough % (rows * columns), columns)
-    centre = np.stack([grid.centres_mm(0)[across], grid.centres_mm(1)[lines]]) - middle[:, None]
+    size = (times.stop - times.start) * rows * columns
+    matrix = sparse.csc_array((weight, number, starts), shape=(size, len(p)))
+    sums = matrix @ np.column_stack(of_places + of_velocities)
+    there = np.flatnonzero(np.bincount(number, minlength=size) >= MIN_ROBOTS)
     with np.errstate(invalid="ignore", divide="ignore"):
-        means = sums[1:] / sums[0]
-        place, mean = means[0:2], means[2:4]
-        xx, xy, yy = means[4] - place[0] ** 2, means[5] - place[0] * place[1], means[6] - place[1] ** 2
+        # Where are the robots around each cell, and are they on all sides of it?
+        means = contiguous(sums[there, :6] / sums[there, :1])
+        place = means[1:3]
+        xx, xy, yy = means[3] - place[0] ** 2, means[4] - place[0] * place[1], means[5] - place[1] ** 2
         determinant = xx * yy - xy**2
-        slopes = np.empty((2, 2, len(enough)))
-        for a in (0, 1):
-            along_x, along_y = (means[7 + 2 * a + b] - mean[a] * place[b] for b in (0, 1))
-            slopes[a, 0] = (along_x * yy - along_y * xy) / determinant
-            slopes[a, 1] = (along_y * xx - along_x * xy) / determinant
-        off = place - centre
+        off = place - (grid.centres_of(there) - middle[:, None])
         off_centre = (off[0] ** 2 * yy - 2.0 * off[0] * off[1] * xy + off[1] ** 2 * xx) / determinant
         good = (determinant > 1e-3 * (xx + yy) ** 2) & (off_centre < 1.0)
-    there = enough[good]
-    value[there] = (mean - slopes[:, 0] * off[0] - slopes[:, 1] * off[1])[:, good].T
-    gradient[there] = np.moveaxis(slopes[:, :, good], 2, 0)
-    return VelocityField(value.reshape(times, rows, columns, 2), gradient.reshape(times, rows, columns, 2, 2))
+    there, place, off = there[good], place[:, good], off[:, good]
+    xx, xy, yy, determinant = xx[good], xy[good], yy[good], determinant[good]
+    means = contiguous(sums[there, 6:] / sums[there, :1])
+    mean = means[:2]
+    slopes = np.empty((2, 2, len(there)))
+    for a in (0, 1):
+        along_x, along_y = (means[2 + 2 * a + b] - mean[a] * place[b] for b in (0, 1))
+        slopes[a, 0] = (along_x * yy - along_y * xy) / determinant
+        slopes[a, 1] = (along_y * xx - along_x * xy) / determinant
+    value = mean - slopes[:, 0] * off[0] - slopes[:, 1] * off[1]
+    number_of_time, cell = np.divmod(there, rows * columns)
+    return KnownCells(times, number_of_time, cell, VelocityField(value.T, np.moveaxis(slopes, 2, 0)))
+
+
+def contiguous(rows: Floats) -> Floats:
+    """Return the columns of a table as rows, each in one piece of memory. Shape (n, k) to (k, n)."""
+    return np.ascontiguousarray(rows.T)

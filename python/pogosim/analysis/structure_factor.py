@@ -10,7 +10,7 @@ from pogosim.analysis.floor import box_of, covered_fraction, floor_of_centres
 from pogosim.analysis.snapshots import snapshots_of
 from pogosim.analysis.trajectories import Trajectories
 
-MAX_CELLS = 1_000_000  # cells of all times that are transformed at once
+MAX_CELLS = 100_000  # cells of all times that are transformed at once: what fits into the cache
 
 
 def structure_factor(run: Trajectories, shape: tuple[int, int] = (128, 128)) -> tuple[Floats, Floats]:

@@ -13,9 +13,8 @@ from pogosim.analysis import motion
 from pogosim.analysis.arena import Floats
 from pogosim.analysis.correlations import VectorCorrelation, vector_correlation
 from pogosim.analysis.directions import directions_of_headings, unit_vectors
-from pogosim.analysis.flow import VelocityField, blocks_of_fields
+from pogosim.analysis.flow import blocks_of_fields
 from pogosim.analysis.order import LocalAlignment, local_alignment
-from pogosim.analysis.snapshots import Integers
 from pogosim.analysis.trajectories import Trajectories, need_columns
 from pogosim.defaults import MIN_SPEED_MM_S
 
@@ -91,40 +90,42 @@ class Swarm:
         settings = self.settings
         columns, rows = settings.vorticity_shape
         edges = np.linspace(-settings.vorticity_range, settings.vorticity_range, VORTICITY_BINS + 1)
-        counted, cells, tables = np.zeros(VORTICITY_BINS), 0, []
-        known = np.zeros((rows, columns))
-        velocity, vorticity = np.zeros((rows, columns, 2)), np.zeros((rows, columns))
-        for times, field in blocks_of_fields(self.run, self.velocity, self.run.reach_mm, settings.vorticity_shape):
-            there = np.isfinite(field.gradient[..., 0, 0])
-            time = np.nonzero(there)[0]
-            here = VelocityField(field.velocity[there], field.gradient[there])
+        counted, cells = np.zeros(VORTICITY_BINS), 0
+        parts: list[dict[str, Floats]] = []
+        # Sums over times, by cell.
+        known, velocity, vorticity = np.zeros(rows * columns), np.zeros((2, rows * columns)), np.zeros(rows * columns)
+        for block in blocks_of_fields(self.run, self.velocity, self.run.reach_mm, settings.vorticity_shape):
+            here = block.field
+            turning, okubo_weiss = here.vorticity, here.okubo_weiss
             own = {
-                "vorticity_per_s": here.vorticity,
-                "abs_vorticity_per_s": np.abs(here.vorticity),
+                "vorticity_per_s": turning,
+                "abs_vorticity_per_s": np.abs(turning),
                 "enstrophy_per_s2": here.enstrophy,
                 "swirling_strength_rad_s": here.swirling_strength,
-                "okubo_weiss_per_s2": here.okubo_weiss,
-                "vortex_fraction": here.okubo_weiss < 0.0,
+                "okubo_weiss_per_s2": okubo_weiss,
+                "vortex_fraction": okubo_weiss < 0.0,
             }
-            means = {name: means_of_groups(time, values, len(there)) for name, values in own.items()}
-            share = there.mean(axis=(1, 2))
-            tables.append(pd.DataFrame({"time_s": self.run.time_s[times], **means, "known_fraction": share}))
-            counted += np.histogram(here.vorticity, edges)[0]
-            cells += len(time)
-            known += there.sum(axis=0)
-            velocity += np.where(there[..., None], field.velocity, 0.0).sum(axis=0)
-            vorticity += np.where(there, field.vorticity, 0.0).sum(axis=0)
+            found = np.bincount(block.time, minlength=block.length)
+            with np.errstate(invalid="ignore"):
+                means = {
+                    name: np.bincount(block.time, values, minlength=block.length) / found
+                    for name, values in own.items()
+                }
+            share = found / (rows * columns)
+            parts.append({"time_s": self.run.time_s[block.times], **means, "known_fraction": share})
+            counted += np.histogram(turning, edges)[0]
+            cells += len(block.cell)
+            known += np.bincount(block.cell, minlength=len(known))
+            velocity += [np.bincount(block.cell, part, minlength=len(known)) for part in here.velocity.T]
+            vorticity += np.bincount(block.cell, turning, minlength=len(known))
         with np.errstate(invalid="ignore"):
             density = counted / (cells * np.diff(edges)) if cells else np.full(VORTICITY_BINS, np.nan)
             return Vortices(
-                pd.concat(tables, ignore_index=True), density, velocity / known[:, :, None], vorticity / known
+                pd.DataFrame({name: np.concatenate([own[name] for own in parts]) for name in parts[0]}),
+                density,
+                (velocity / known).T.reshape(rows, columns, 2),
+                (vorticity / known).reshape(rows, columns),
             )
-
-
-def means_of_groups(group: Integers, values: np.ndarray, count: int) -> Floats:
-    """Return the mean of the values of each of so many groups; NaN of nothing."""
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.bincount(group, values, minlength=count) / np.bincount(group, minlength=count))
 
 
 def mean_of_robots(values: Floats) -> Floats:
