@@ -6,7 +6,8 @@ import warnings
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
+
+from pogosim.deferred import pandas as pd
 
 # Ten times the largest coordinate that a configuration can have (kMaxLength in src/config/scenario.hpp): 10 km.
 FARTHEST_MM = 1e7

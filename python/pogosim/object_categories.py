@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
 from pogosim.arguments import number
 from pogosim.batch.configurations.paths import set_in_dict
+from pogosim.deferred import pandas as pd
 from pogosim.object_facts import OBJECTS, Entry, entries_in, entries_of
 from pogosim.run_columns import is_one_run
 from pogosim.scene import Kind, bodies_of, read_periodic

@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
 from pogosim.continued import with_joined_parts
+from pogosim.deferred import pandas as pd
 from pogosim.outputs import PathLike
 from pogosim.run_columns import RUN, is_one_run, run_numbers, tells_runs_apart
 from pogosim.times import with_exact_times
 from pogosim.varied import MISSING, OBJECTS, facts_in_common, in_common, varied_parameters
 
-Loaded = tuple[Path, pd.DataFrame, "dict[str, Any]"]
+Loaded = tuple[Path, "pd.DataFrame", "dict[str, Any]"]
 
 
 def is_pattern(path: PathLike) -> bool:

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 from matplotlib.path import Path as Outline
 
 from pogosim.arguments import number
 from pogosim.defaults import POGOBOT_RADIUS_MM
+from pogosim.deferred import shapely
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]

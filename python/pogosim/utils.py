@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 import pyarrow
 from pyarrow import feather
 
 from pogosim.arguments import Arguments
 from pogosim.damaged_files import damage_told
+from pogosim.deferred import pandas as pd
 from pogosim.errors import DamagedFileError
 from pogosim.outputs import PathLike
 from pogosim.recover import RecoverError, Unfinished, is_complete, read_unfinished

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import logging
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,8 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from pogosim.command.main import COMMANDS
+from pogosim.reports.command import ANALYSES
 from pogosim.simple_yaml import simple_yaml
 from pogosim.yaml_1_2 import dump_yaml
 from running import ROOT, build_folder, example, write_scene
@@ -93,6 +97,51 @@ def test_a_run_in_python_imports_no_large_package(scene: Path) -> None:
     """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "[]\n"
+
+
+# What is not imported by what: a command that explains itself, or a module whose work needs none of it yet.
+FOR_NUMBERS = ("numpy", "pandas", "pyarrow", "matplotlib", "scipy", "shapely", "PIL", "asyncio", "multiprocessing")
+NOT_LOADED = {
+    "pogosim": FOR_NUMBERS,
+    "pogosim.watch": FOR_NUMBERS,
+    "pogosim.simulation.errors": FOR_NUMBERS,
+    "pogosim.simulation": FOR_NUMBERS,
+    "pogosim.reports.command_lines": FOR_NUMBERS,
+    "pogosim.utils": ("pandas", "matplotlib", "scipy", "shapely"),
+    "pogosim.scene": ("pandas", "scipy", "shapely"),
+    "pogosim.watch.server": ("pandas", "scipy", "shapely"),
+}
+
+
+def loaded_by(code: str, modules: Sequence[str]) -> list[str]:
+    """Return which modules a piece of code has loaded."""
+    tell = f"\nimport sys\nprint([name for name in {list(modules)!r} if name in sys.modules], file=sys.stderr)"
+    run = subprocess.run([sys.executable, "-c", code + tell], capture_output=True, text=True, check=True)
+    return list(ast.literal_eval(run.stderr.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("command", ["--help", "--version", *(f"{name} --help" for name in COMMANDS.own)])
+def test_commands_explain_themselves_without_large_packages(command: str) -> None:
+    code = f"from pogosim.command.main import main\ntry: main({command.split()!r})\nexcept SystemExit: pass"
+    assert loaded_by(code, FOR_NUMBERS) == []
+
+
+@pytest.mark.parametrize("analysis", ANALYSES.own)
+def test_analyses_explain_themselves_without_large_packages(analysis: str) -> None:
+    arguments = ["analyze", analysis, "--help"]
+    code = f"from pogosim.command.main import main\ntry: main({arguments!r})\nexcept SystemExit: pass"
+    assert loaded_by(code, FOR_NUMBERS) == []
+
+
+@pytest.mark.parametrize("module", NOT_LOADED)
+def test_modules_import_no_package_that_they_may_not_need(module: str) -> None:
+    assert loaded_by(f"import {module}", NOT_LOADED[module]) == []
+
+
+def test_a_deferred_package_is_imported_when_it_is_used() -> None:
+    code = "from pogosim.deferred import pandas as pd"
+    assert loaded_by(code, ["pandas"]) == []
+    assert loaded_by(f"{code}\nassert len(pd.DataFrame()) == 0", ["pandas"]) == ["pandas"]
 
 
 SIMPLE_VALUES = st.one_of(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import asyncio
 import functools
 import ipaddress
 import math
@@ -180,6 +179,8 @@ def watch(options: argparse.Namespace, prog: str) -> int:
         if error.name != "websockets":
             raise
         raise WatchError(f"this needs the Python package 'websockets'; install it: {installing('watch')}") from None
+    import asyncio  # takes a while
+
     from pogosim.simulation import Simulation
     from pogosim.watch.live import LiveRun
     from pogosim.watch.page import watch_page
@@ -245,6 +246,8 @@ async def serve(
     signals: Signals,
 ) -> None:
     """Serve until a signal, or the end of the run if that is wanted."""
+    import asyncio
+
     from pogosim.watch.serving import address_of
     from pogosim.watch.terminal import print_out
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
+from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.picture.colouring import SHADES, Scale, holds_numbers, label_of, numbers_of, scale_of, swatches_of
 from pogosim.shapes import Floats

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
+from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box

@@ -11,9 +11,9 @@ from typing import Any, TypeAlias
 
 import matplotlib as mpl
 import numpy as np
-import pandas as pd
 from matplotlib.colors import Colormap, ListedColormap
 
+from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.nearest_name import nearest_name
 from pogosim.picture.palette import NO_LED

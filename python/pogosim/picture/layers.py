@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import PathPatch
 
+from pogosim.deferred import pandas as pd
 from pogosim.picture.body_links import placed_at
 from pogosim.picture.images import Box, joined, lines_between, seen_places
 from pogosim.picture.links import box_of, links_at_end

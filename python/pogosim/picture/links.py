@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
-from scipy.spatial import KDTree
 
+from pogosim.deferred import pandas as pd
+from pogosim.deferred import spatial
 from pogosim.periodic import minimum_image
 from pogosim.picture.images import Box, lines_between
 from pogosim.picture.swarm import KIND, OBJECT, Swarm
@@ -41,7 +41,7 @@ def proximity_pairs(position_mm: Floats, range_mm: Floats, radius_mm: Floats, bo
         size = box[1] - box[0]
         position_mm = (position_mm - box[0]) % size
         position_mm = np.where(position_mm >= size, 0.0, position_mm)  # of -1e-20, the remainder is rounded up
-    pairs = KDTree(position_mm, boxsize=size).query_pairs(furthest, output_type="ndarray").astype(np.int64)
+    pairs = spatial.KDTree(position_mm, boxsize=size).query_pairs(furthest, output_type="ndarray").astype(np.int64)
     first, second = pairs.T
     step = minimum_image(position_mm[second] - position_mm[first], size)
     reach = np.maximum(range_mm[first], range_mm[second])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
+from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.picture.colouring import is_internal
 from pogosim.run_columns import RUN, is_one_run, tells_runs_apart

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 
+from pogosim.deferred import pandas as pd
 from pogosim.periodic import steps_of
 from pogosim.shapes import Floats
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
 from pogosim.arguments import Arguments
 from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
+from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, kinds_of, last_kinds, with_categories
