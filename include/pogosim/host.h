@@ -283,11 +283,22 @@ int pogosim_run_take_turn(pogosim_run* run, struct pogosim_turn* turn, double bu
 /// Makes `count` threads, 1 to 1024, which wait for work; fewer if the system cannot make so many.
 int pogosim_threads_open(int count, pogosim_threads** threads);
 
+/// An array of pogosim_run_brain_array() that runs exchange with the host's memory while they take a turn.
+struct pogosim_exchange {
+    char const* category;
+    char const* name;
+    void* place;        ///< of the array of the first run; those of the others follow without gaps
+    size_t bytes_each;  ///< size of the array of one run; a run whose array has another one fails
+    int32_t gives;      ///< not 0: before its steps, the run gets what is there; only arrays that can be written
+    int32_t takes;      ///< not 0: after its steps, what it has is copied there
+};
+
 /// Many runs make the steps that are left, as many at a time as there are threads, each by pogosim_run_step(). No run
-/// begins a further step after `budget_s` seconds (infinity: no limit), but each makes at least one. The call fails
-/// with the first run that fails in it; the others go on nevertheless. A run may be given only once.
+/// begins a further step after `budget_s` seconds (infinity: no limit), but each makes at least one. Before and after
+/// its steps, also if there are none, each run exchanges these arrays. The call fails with the first run that fails in
+/// it; the others go on nevertheless. A run may be given only once.
 int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, struct pogosim_turn* turns, size_t count,
-                         double budget_s);
+                         struct pogosim_exchange const* exchanges, size_t exchange_count, double budget_s);
 
 /// What went wrong in the last call for the run of this index; empty: nothing.
 char const* pogosim_threads_error(pogosim_threads const* threads, size_t run);
@@ -302,10 +313,6 @@ void pogosim_threads_close(pogosim_threads* threads);
 /// one.
 int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* category, char const* name, void* into,
                       size_t bytes_each);
-
-/// The reverse, for arrays of pogosim_run_brain_array() that can be written.
-int pogosim_runs_write(pogosim_run* const* runs, size_t count, char const* category, char const* name, void const* from,
-                       size_t bytes_each);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

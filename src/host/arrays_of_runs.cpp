@@ -101,14 +101,6 @@ void read_rows(std::size_t run, Rows const& rows, std::byte* into, std::size_t b
     }
 }
 
-/// All arrays that may be written are dense.
-void write_rows(std::size_t run, Rows const& rows, std::byte const* from, std::size_t bytes) {
-    check_size(run, rows.count, rows.bytes, bytes);
-    if (bytes > 0) {
-        std::memcpy(rows.data, from, bytes);
-    }
-}
-
 pogosim_array array_in(pogosim_run& run, char const* category, char const* name) {
     if (category != nullptr) {
         return brain_array_of(run, category, name);
@@ -120,7 +112,28 @@ pogosim_array array_in(pogosim_run& run, char const* category, char const* name)
     throw ConfigError(fmt::format("a run has no array '{}'", name));
 }
 
+std::byte* place_of(std::size_t run, pogosim_exchange const& exchange) {
+    return static_cast<std::byte*>(exchange.place) + run * exchange.bytes_each;
+}
+
 }  // namespace
+
+/// All arrays that may be written are dense.
+void pogosim::give_array(pogosim_run& run, std::size_t index, pogosim_exchange const& exchange) {
+    if (std::ranges::find(kWritten, std::string_view(exchange.name)) == kWritten.end()) {
+        throw ConfigError(fmt::format("the array '{}' cannot be written", exchange.name));
+    }
+    Rows const rows = rows_of(brain_array_of(run, exchange.category, exchange.name));
+    check_size(index, rows.count, rows.bytes, exchange.bytes_each);
+    if (exchange.bytes_each > 0) {
+        std::memcpy(rows.data, place_of(index, exchange), exchange.bytes_each);
+    }
+}
+
+void pogosim::take_array(pogosim_run& run, std::size_t index, pogosim_exchange const& exchange) {
+    Rows const rows = rows_of(brain_array_of(run, exchange.category, exchange.name));
+    read_rows(index, rows, place_of(index, exchange), exchange.bytes_each);
+}
 
 int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* category, char const* name, void* into,
                       size_t bytes_each) {
@@ -143,21 +156,6 @@ int pogosim_runs_read(pogosim_run* const* runs, size_t count, char const* catego
             } else {
                 read_rows(i, rows, place, bytes_each);
             }
-        }
-        return POGOSIM_OK;
-    });
-}
-
-int pogosim_runs_write(pogosim_run* const* runs, size_t count, char const* category, char const* name, void const* from,
-                       size_t bytes_each) {
-    return with_status([&] {
-        if (category == nullptr || std::ranges::find(kWritten, std::string_view(name)) == kWritten.end()) {
-            throw ConfigError(fmt::format("the array '{}' cannot be written", name));
-        }
-        auto const* place = static_cast<std::byte const*>(from);
-        for (std::size_t i = 0; i < count; ++i, place += bytes_each) {
-            std::lock_guard const lock(runs[i]->in_use);
-            write_rows(i, rows_of(brain_array_of(*runs[i], category, name)), place, bytes_each);
         }
         return POGOSIM_OK;
     });

@@ -95,15 +95,19 @@ int pogosim_run_step(pogosim_run* run, int64_t steps, double budget_s, int64_t* 
     });
 }
 
+void pogosim::take_turn(pogosim_run& run, pogosim_turn& turn, double budget_s) {
+    turn.status = with_status([&] {
+        if (run.has_failed() || (turn.left > 0 && !run.is_over())) {  // a failed run says so
+            turn.left -= run.step(turn.left, budget_s);
+        }
+        return run.is_over() ? POGOSIM_OVER : POGOSIM_OK;
+    });
+    turn.has_messages = run.has_messages() ? 1 : 0;
+}
+
 int pogosim_run_take_turn(pogosim_run* run, pogosim_turn* turn, double budget_s) {
     std::lock_guard const lock(run->in_use);
-    turn->status = with_status([&] {
-        if (run->has_failed() || (turn->left > 0 && !run->is_over())) {  // a failed run says so
-            turn->left -= run->step(turn->left, budget_s);
-        }
-        return run->is_over() ? POGOSIM_OVER : POGOSIM_OK;
-    });
-    turn->has_messages = run->has_messages() ? 1 : 0;
+    take_turn(*run, *turn, budget_s);
     return turn->status;
 }
 

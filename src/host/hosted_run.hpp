@@ -98,6 +98,14 @@ std::size_t part_count(World const& world);
 /// An array of a category that this process drives. Throws ConfigError if there is none.
 pogosim_array brain_array_of(pogosim_run& run, std::string_view category, std::string_view name);
 
+/// Does what pogosim_run_take_turn() does; the caller holds the run's `in_use`.
+void take_turn(pogosim_run& run, pogosim_turn& turn, double budget_s);
+
+/// Give a run its array of an exchange before a turn, and take it afterwards. `index`: of the run in the host's memory.
+/// The caller holds the run's `in_use`. Throw ConfigError if there is no such array, or it has another size.
+void give_array(pogosim_run& run, std::size_t index, pogosim_exchange const& exchange);
+void take_array(pogosim_run& run, std::size_t index, pogosim_exchange const& exchange);
+
 /// What pogosim_run_light_levels() gives. `levels` has a place for each robot.
 void read_light_levels(World const& world, double* levels);
 

@@ -31,6 +31,7 @@ constexpr int kMostHostThreads = 1024;
 struct Work {
     std::span<pogosim_run* const> runs{};
     std::span<pogosim_turn> turns{};
+    std::span<pogosim_exchange const> exchanges{};
     std::span<std::string> errors{};
     Deadline deadline{};
 };
@@ -39,14 +40,31 @@ double seconds_until(Deadline when) {
     return std::chrono::duration<double>(when - Clock::now()).count();
 }
 
-void make_turn(pogosim_run& run, pogosim_turn& turn, std::string& error, double budget_s) {
+/// Exchanges its arrays around the steps, while what they are made of is in the cache.
+void make_turn(Work const& work, std::size_t index) {
+    pogosim_run& run = *work.runs[index];
+    pogosim_turn& turn = work.turns[index];
     if (turn.status != POGOSIM_OK) {
         turn.has_messages = 0;
         return;
     }
-    pogosim_run_take_turn(&run, &turn, budget_s);
+    std::lock_guard const lock(run.in_use);
+    turn.status = with_status([&] {
+        for (pogosim_exchange const& exchange : work.exchanges) {
+            if (exchange.gives != 0) {
+                give_array(run, index, exchange);
+            }
+        }
+        take_turn(run, turn, seconds_until(work.deadline));
+        for (pogosim_exchange const& exchange : work.exchanges) {
+            if (exchange.takes != 0) {
+                take_array(run, index, exchange);
+            }
+        }
+        return turn.status;
+    });
     if (turn.status != POGOSIM_OK && turn.status != POGOSIM_OVER) {
-        error = pogosim_host_error();
+        work.errors[index] = pogosim_host_error();
     }
 }
 
@@ -79,13 +97,14 @@ public:
     pogosim_threads(pogosim_threads const&) = delete;
     pogosim_threads& operator=(pogosim_threads const&) = delete;
 
-    int step(std::span<pogosim_run* const> runs, std::span<pogosim_turn> turns, double budget_s) {
+    int step(std::span<pogosim_run* const> runs, std::span<pogosim_turn> turns,
+             std::span<pogosim_exchange const> exchanges, double budget_s) {
         std::lock_guard const one_call(in_use_);
         errors_.assign(runs.size(), {});
         auto const deadline = Clock::now() + std::chrono::duration<double>(budget_s);
         {
             std::lock_guard const lock(mutex_);
-            work_ = {.runs = runs, .turns = turns, .errors = errors_, .deadline = deadline};
+            work_ = {.runs = runs, .turns = turns, .exchanges = exchanges, .errors = errors_, .deadline = deadline};
             next_ = 0;
             ++call_;
             working_ = static_cast<int>(threads_.size());
@@ -108,7 +127,7 @@ private:
     void take_turns() {
         ThreadOfRuns const thread;
         for (std::size_t i = next_++; i < work_.runs.size(); i = next_++) {
-            make_turn(*work_.runs[i], work_.turns[i], work_.errors[i], seconds_until(work_.deadline));
+            make_turn(work_, i);
         }
     }
 
@@ -157,8 +176,10 @@ int pogosim_threads_open(int count, pogosim_threads** threads) {
 }
 
 int pogosim_threads_step(pogosim_threads* threads, pogosim_run* const* runs, pogosim_turn* turns, size_t count,
-                         double budget_s) {
-    return with_status([&] { return threads->step({runs, count}, {turns, count}, budget_s); });
+                         pogosim_exchange const* exchanges, size_t exchange_count, double budget_s) {
+    return with_status([&] {
+        return threads->step({runs, count}, {turns, count}, {exchanges, exchange_count}, budget_s);
+    });
 }
 
 char const* pogosim_threads_error(pogosim_threads const* threads, size_t run) {

@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <typeinfo>
 
 #include "base/counted.hpp"
 #include "base/error.hpp"
@@ -455,9 +456,9 @@ FirmwareServices Simulation::firmware_services() {
 }
 
 HostBrain* Simulation::host_brain(std::string_view category) {
-    auto const named = [&](std::unique_ptr<Brain> const& brain) {
-        auto const* const host = dynamic_cast<HostBrain const*>(brain.get());
-        return host != nullptr && host->category() == category;
+    auto const named = [&](std::unique_ptr<Brain> const& pointer) {
+        Brain const& brain = *pointer;
+        return typeid(brain) == typeid(HostBrain) && static_cast<HostBrain const&>(brain).category() == category;
     };
     auto const found = std::ranges::find_if(brains_, named);
     return found == brains_.end() ? nullptr : static_cast<HostBrain*>(found->get());

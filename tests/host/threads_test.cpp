@@ -20,7 +20,7 @@
 namespace {
 
 struct Talk {
-    std::string program;
+    std::string program;  // empty: the configuration needs none
     std::string scene;
     std::string failure;  // of the program hosted.c, at tick 20; empty: none
     std::int64_t seed = 1;
@@ -56,7 +56,7 @@ int open_run(Talk const& talk, pogosim_run** run) {
     for (std::string const& setting : settings) {
         texts.push_back(setting.c_str());
     }
-    pogosim_run_options const options{.program = talk.program.c_str(),
+    pogosim_run_options const options{.program = talk.program.empty() ? nullptr : talk.program.c_str(),
                                       .configuration = talk.scene.c_str(),
                                       .settings = texts.data(),
                                       .setting_count = texts.size(),
@@ -117,10 +117,12 @@ private:
 };
 
 /// Lets all runs make so many steps. Returns what each has done.
-std::vector<pogosim_turn> stepped(OpenRuns const& runs, pogosim_threads* threads, std::int64_t steps) {
+std::vector<pogosim_turn> stepped(OpenRuns const& runs, pogosim_threads* threads, std::int64_t steps,
+                                  std::vector<pogosim_exchange> const& exchanges = {}) {
     std::vector<pogosim_turn> turns(runs.size(), {.left = steps, .status = POGOSIM_OK, .has_messages = 0});
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-    pogosim_threads_step(threads, runs.data(), turns.data(), turns.size(), kNoLimit);
+    pogosim_threads_step(threads, runs.data(), turns.data(), turns.size(), exchanges.data(), exchanges.size(),
+                         kNoLimit);
     return turns;
 }
 
@@ -216,8 +218,43 @@ TEST(ManyRuns, GiveTheirArraysOneAfterTheOther) {
     EXPECT_EQ(read(nullptr, "bodies.colour"), POGOSIM_USAGE);
     EXPECT_STREQ(pogosim_host_error(), "a run has no array 'bodies.colour'");
     EXPECT_EQ(read("robots", "motors"), POGOSIM_USAGE);
-    EXPECT_EQ(pogosim_runs_write(runs.data(), 3, "robots", "photosensors", room.data(), 8), POGOSIM_USAGE);
-    EXPECT_STREQ(pogosim_host_error(), "the array 'photosensors' cannot be written");
+}
+
+TEST(ManyRuns, ExchangeArraysWithTheHostAroundTheirSteps) {
+    std::string driven = scene(3);
+    driven.insert(driven.find("nb:"), "brain: host, ");
+    std::string const file = written("host_driven.yaml", driven);
+    OpenRuns const runs({{"", file, "", 1}, {"", file, "", 2}});
+    pogosim_threads* threads = nullptr;
+    ASSERT_EQ(pogosim_threads_open(2, &threads), POGOSIM_OK);
+
+    std::array<std::array<std::int32_t, 9>, 2> motors{{{1, 2, 3, 4, 5, 6, 7, 8, 9}, {9, 8, 7, 6, 5, 4, 3, 2, 1}}};
+    std::array<std::array<std::int32_t, 3>, 2> lengths{};  // messages of 0 bytes
+    std::array<std::array<std::int16_t, 3>, 2> voltages{};
+    auto const given = motors;
+    std::vector<pogosim_exchange> exchanges{{"robots", "motors", motors.data(), sizeof(motors[0]), 1, 0},
+                                            {"robots", "send_length", lengths.data(), sizeof(lengths[0]), 1, 1},
+                                            {"robots", "battery_mv", voltages.data(), sizeof(voltages[0]), 0, 1}};
+    stepped(runs, threads, 0, exchanges);
+    EXPECT_EQ(lengths[1][2], 0);
+    for (std::size_t i = 0; i < 2; ++i) {
+        pogosim_array own = {};
+        ASSERT_EQ(pogosim_run_brain_array(runs[i], "robots", "motors", &own), POGOSIM_OK);
+        EXPECT_EQ(std::memcmp(own.data, given.at(i).data(), sizeof(given[0])), 0);
+    }
+    stepped(runs, threads, 3, exchanges);
+    EXPECT_EQ(motors, given);
+    EXPECT_EQ(lengths[1][2], -1);  // sent
+    EXPECT_GT(voltages[1][2], 3000);
+
+    exchanges = {{"robots", "battery_mv", voltages.data(), sizeof(voltages[0]), 1, 0}};
+    EXPECT_EQ(stepped(runs, threads, 1, exchanges)[1].status, POGOSIM_USAGE);
+    EXPECT_STREQ(pogosim_threads_error(threads, 1), "the array 'battery_mv' cannot be written");
+    exchanges = {{"robots", "motors", motors.data(), 8, 1, 0}};
+    EXPECT_EQ(stepped(runs, threads, 1, exchanges)[1].left, 1);
+    EXPECT_STREQ(pogosim_threads_error(threads, 1),
+                 "run 1: the array has 3 rows of 12 bytes, and there is room for 8 bytes");
+    pogosim_threads_close(threads);
 }
 
 TEST(ManyRuns, NeedASensibleNumberOfThreads) {

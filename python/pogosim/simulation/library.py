@@ -139,6 +139,19 @@ class Turn(ctypes.Structure):
     _fields_ = (("left", c_int64), ("status", c_int32), ("has_messages", c_int32))
 
 
+class Exchange(ctypes.Structure):
+    """`struct pogosim_exchange`."""
+
+    _fields_ = (
+        ("category", c_char_p),
+        ("name", c_char_p),
+        ("place", c_void_p),
+        ("bytes_each", c_size_t),
+        ("gives", c_int32),
+        ("takes", c_int32),
+    )
+
+
 PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_host_error": (c_char_p, ()),
     "pogosim_host_version": (c_char_p, ()),
@@ -179,11 +192,10 @@ PROTOTYPES: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "pogosim_run_leave_archive": (None, (c_void_p,)),
     "pogosim_run_hash": (c_uint64, (c_void_p,)),
     "pogosim_threads_open": (c_int, (c_int, POINTER(c_void_p))),
-    "pogosim_threads_step": (c_int, (c_void_p, c_void_p, c_void_p, c_size_t, c_double)),
+    "pogosim_threads_step": (c_int, (c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_double)),
     "pogosim_threads_error": (c_char_p, (c_void_p, c_size_t)),
     "pogosim_threads_close": (None, (c_void_p,)),
     "pogosim_runs_read": (c_int, (c_void_p, c_size_t, c_char_p, c_char_p, c_void_p, c_size_t)),
-    "pogosim_runs_write": (c_int, (c_void_p, c_size_t, c_char_p, c_char_p, c_void_p, c_size_t)),
 }
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import SimulationError
-from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, library
+from pogosim.simulation.library import OK, OVER, Exchange, Turn, check, error_of_step, library
 from pogosim.simulation.run import SLICE_S
 
 IN_USE = "a simulation is in use by another thread: give each thread one of its own"
@@ -39,15 +39,17 @@ class RunThreads:
         check(library().pogosim_threads_open(count, byref(self._handle)))
         self.close = weakref.finalize(self, close_threads, self._handle, os.getpid())
 
-    def step(self, pointers: Any, turns: npt.NDArray[Any]) -> dict[int, SimulationError]:
+    def step(self, runs: ManyRuns, exchanges: Sequence[Exchange]) -> dict[int, SimulationError]:
         """Let runs make steps for a while, each at least one. Returns what went wrong, by the index of the run.
 
         Args:
-            pointers: An array of the library's pointers to them.
-            turns: What each is to do, and has done: of type Turn, shape (runs,).
+            runs: They; their `turns` say what each is to do, and has done.
+            exchanges: The arrays that each is given before its steps, and that are taken after them.
         """
-        where, count = turns.ctypes.data, len(turns)
-        if library().pogosim_threads_step(self._handle, pointers, where, count, SLICE_S) == OK:
+        turns, count = runs.turns, len(exchanges)
+        arrays = (Exchange * count)(*exchanges)
+        where = turns.ctypes.data
+        if library().pogosim_threads_step(self._handle, runs.pointers, where, len(turns), arrays, count, SLICE_S) == OK:
             return {}
         failed = np.flatnonzero((turns["status"] != OK) & (turns["status"] != OVER))
         found = {}
@@ -81,21 +83,19 @@ class ManyRuns:
         Raises:
             ConfigurationError: The arrays of some runs have other shapes.
         """
-        self._copy(library().pogosim_runs_read, name, into, category, run)
-
-    def write(self, name: str, values: npt.NDArray[Any], category: str) -> None:
-        """Copy values into an array of the brain of each run, see pogosim_runs_write(). Shape (runs, ...)."""
-        self._copy(library().pogosim_runs_write, name, values, category, None)
-
-    def _copy(self, function: Any, name: str, values: npt.NDArray[Any], category: str | None, run: int | None) -> None:
-        if not len(values):
+        if not len(into):
             return
         of_category = None if category is None else category.encode()
-        size = values.strides[0] if values[0].size else 0
-        pointers, place, count = self.pointers, values.ctypes.data, len(values)
+        size = bytes_each(into)
+        pointers, place, count = self.pointers, into.ctypes.data, len(into)
         if run is not None:
             pointers, place, count = (c_void_p * 1)(self.pointers[run]), place + run * size, 1
-        check(function(pointers, count, of_category, name.encode(), place, size))
+        check(library().pogosim_runs_read(pointers, count, of_category, name.encode(), place, size))
+
+
+def bytes_each(array: npt.NDArray[Any]) -> int:
+    """Return the size of the part of one run. Shape (runs, ...), without gaps."""
+    return array.nbytes // len(array) if len(array) else 0
 
 
 @contextmanager
@@ -114,6 +114,6 @@ def all_held(locks: Sequence[Lock]) -> Iterator[None]:
                 raise SimulationError(IN_USE)
         yield
     finally:
-        for lock in held:
-            with suppress(RuntimeError):  # it was not held yet
+        with suppress(RuntimeError):  # the last one was not held yet
+            for lock in held:
                 lock.release()

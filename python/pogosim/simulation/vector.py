@@ -191,20 +191,17 @@ class VectorSimulation:
         runs = self._runs()
         failed: dict[int, SimulationError] = {}
         with self._all_held():
-            for brain in self._brains.values():
-                brain._write(runs)
+            exchanges = [array for brain in self._brains.values() for array in brain._exchanges(runs)]
             turns = runs.turns
             turns["left"], turns["status"] = min(steps, MOST_STEPS), OK
             is_first = True
             while is_first or ((turns["left"] > 0) & (turns["status"] == OK)).any():
                 is_first = False
                 try:
-                    failed |= self._stepping.step(runs.pointers, turns)
+                    failed |= self._stepping.step(runs, exchanges)
                 finally:
                     for run in np.flatnonzero(turns["has_messages"]).tolist():
                         self.simulations[run]._pass_messages_on()
-            for brain in self._brains.values():
-                brain._read(runs)
         if failed:
             run = min(failed)
             raise type(failed[run])(f"run {run}: {failed[run]}")

@@ -12,8 +12,8 @@ from pogosim.arguments import shown
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.brain import RECEIVED, BrainArrays
 from pogosim.simulation.errors import ConfigurationError
-from pogosim.simulation.library import check, library
-from pogosim.simulation.many_runs import ManyRuns
+from pogosim.simulation.library import Exchange, check, library
+from pogosim.simulation.many_runs import ManyRuns, bytes_each
 
 # Shape of a robot's row and type, by name, as of pogosim_run_brain_array().
 WRITTEN: dict[str, tuple[tuple[int, ...], str]] = {
@@ -34,18 +34,18 @@ RECEIVED_IN_RUNS = np.dtype([("run", "<i4"), *RECEIVED.descr])
 TAKEN_BACK = "send_length"  # which a run sets to -1
 
 
-def moments_of(runs: ManyRuns) -> list[tuple[RunState, int]]:
-    """Return what changes when a run begins anew, or goes on from a state."""
-    return [(state, state.restored) for state in runs.states]
+def moments_of(runs: ManyRuns) -> tuple[list[RunState], list[int]]:
+    """Return what changes when a run begins anew, or goes on from a state: the runs, and how often each has done so."""
+    return runs.states, [state.restored for state in runs.states]
 
 
 class VectorBrain(BrainArrays):
     """The robots of a category with `brain: host` in all runs of a `VectorSimulation`: `runs.brain("robots")`.
 
     Arrays are those of `Brain` with the runs in front: `motors` has the shape (runs, robots, 3). But they are copies,
-    and stay valid: `VectorSimulation.step` gives all runs what is in `motors`, `leds` and messages to send, then makes
-    the steps, then takes the sensors, by one call each for all runs, and only for arrays that were asked for. So
-    values that were written hold until others are, also over a reset. `runs[3].step()`, and what `each` calls, go by
+    and stay valid: `VectorSimulation.step` gives each run what is in `motors`, `leds` and messages to send, makes its
+    steps, and takes its sensors, on the threads of the runs, and only for arrays that were asked for. So values that
+    were written hold until others are, also over a reset. `runs[3].step()`, and what `each` calls, go by
     `runs[3].brain("robots")` alone. All runs need as many robots of the category.
 
         brain = runs.brain("robots")
@@ -61,7 +61,7 @@ class VectorBrain(BrainArrays):
         self._category = category
         self._robots = robots
         self._arrays: dict[str, npt.NDArray[Any]] = {}
-        self._seen: list[tuple[RunState, int]] = []  # see `moments_of`; what the arrays show
+        self._seen: tuple[list[RunState], list[int]] = [], []  # see `moments_of`; what the arrays show
 
     def __repr__(self) -> str:
         return f"<pogosim.VectorBrain of category {self._category!r}: {len(self._runs().states)} runs>"
@@ -79,8 +79,9 @@ class VectorBrain(BrainArrays):
     def _follow(self, runs: ManyRuns) -> None:
         """Show what runs measure that have begun anew, or gone on from a state."""
         if self._seen != (now := moments_of(runs)):
-            for index, moment in enumerate(now):
-                if not self._seen or self._seen[index] != moment:
+            before = list(zip(*self._seen, strict=True))
+            for index, moment in enumerate(zip(*now, strict=True)):
+                if not before or before[index] != moment:
                     self._take(runs, index)
             self._seen = now
 
@@ -107,21 +108,28 @@ class VectorBrain(BrainArrays):
                 f"{self._robots}: reset it with as many, or make another VectorSimulation"
             )
 
-    def _write(self, runs: ManyRuns) -> None:
-        """Give the runs what was written."""
-        if self._seen != moments_of(runs):
+    def _exchanges(self, runs: ManyRuns) -> list[Exchange]:
+        """Return what a step gives the runs, and takes: what they have measured, and which messages wait still.
+
+        Raises:
+            ConfigurationError: A run has another number of robots than the others.
+        """
+        if self._seen != (now := moments_of(runs)):
             for index in range(len(runs.states)):
                 self._check_size(runs, index)
-        for name, array in self._arrays.items():
-            if name in WRITTEN:
-                runs.write(name, array, self._category)
-
-    def _read(self, runs: ManyRuns) -> None:
-        """Take what the runs have measured, and which messages wait still."""
-        self._seen = moments_of(runs)
-        for name, array in self._arrays.items():
-            if name in READ or name == TAKEN_BACK:
-                runs.read(name, array, self._category)
+            self._seen = now
+        category = self._category.encode()
+        return [
+            Exchange(
+                category=category,
+                name=name.encode(),
+                place=array.ctypes.data,
+                bytes_each=bytes_each(array),
+                gives=name in WRITTEN,
+                takes=name in READ or name == TAKEN_BACK,
+            )
+            for name, array in self._arrays.items()
+        ]
 
     @property
     def received(self) -> npt.NDArray[Any]:
