@@ -77,6 +77,7 @@ private:
     /// Values that the host writes beyond what a robot takes, each warned of once.
     enum class TooMuch { power, length, face, face_of_model, motor };
 
+    void expect(RobotRange robots);
     void tick(std::uint32_t robot);
     void set_motors(std::uint32_t robot, std::array<std::int32_t, kMotorCount> const& powers);
     void send(std::uint32_t robot);
@@ -94,6 +95,7 @@ private:
     std::array<bool, 5> warned_{};  // of a TooMuch
     Inputs inputs_;
     Outputs outputs_;
+    std::vector<std::array<std::size_t, kPhotosensorCount>> light_cells_;  // of the robots that are due, see expect()
     std::size_t most_received_ = 0;
     std::size_t received_count_ = 0;
     std::size_t used_bytes_ = 0;

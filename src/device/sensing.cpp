@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "world/light_cell.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -11,13 +13,17 @@ constexpr float kMmPerM = 1000.0F;
 
 }  // namespace
 
-int light_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor) {
+std::size_t light_cell_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor) {
     Bodies const& bodies = world.bodies;
     std::uint32_t const body = world.robots.body[robot];
     PartPlace const& place = world.spec_of(robot).model.light_sensors[sensor].place;
     Vec2 const axis = bodies.heading_dir[body];
     Vec2 const offset = bodies.radius_mm[body] * rotate(place.radii, axis) + rotate(place.offset_mm, axis);
-    return world.light.at(wrapped(world, bodies.position_mm[body] + offset));
+    return cell_under(world.light, wrapped(world, bodies.position_mm[body] + offset));
+}
+
+int light_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor) {
+    return world.light.level[light_cell_at_sensor(world, robot, sensor)];
 }
 
 double mean_light(World const& world, std::uint32_t robot) {

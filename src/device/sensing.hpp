@@ -10,6 +10,9 @@
 
 namespace pogosim {
 
+/// The cell of the light map, as an index into its levels, at a light sensor of a robot that has a body.
+std::size_t light_cell_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor);
+
 /// Light level at a light sensor of a robot that has a body, sensor counts.
 int light_at_sensor(World const& world, std::uint32_t robot, std::size_t sensor);
 

@@ -59,8 +59,12 @@ ImuReading read_imu(World& world, std::uint32_t robot) {
 }
 
 std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor) {
+    return read_photosensor(world, robot, sensor, light_at_sensor(world, robot, sensor));
+}
+
+std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor, int light) {
     RobotSpec const& spec = world.spec_of(robot);
-    int level = light_at_sensor(world, robot, sensor) + world.devices.photosensor_bias[robot][sensor];
+    int level = light + world.devices.photosensor_bias[robot][sensor];
     if (float const noise = spec.photosensor_noise_stddev; noise > 0.0F) {
         level += static_cast<int>(noise * world.robots.stream[robot].normal());
     }

@@ -37,4 +37,7 @@ inline constexpr std::string_view kNoLamps =
 /// noise, which is drawn here, and the bits of its converter.
 std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor);
 
+/// The same where the light at the sensor is known, sensor counts.
+std::int16_t read_photosensor(World& world, std::uint32_t robot, std::size_t sensor, int light);
+
 }  // namespace pogosim

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/light_cell.hpp"
+
 namespace pogosim {
 
 std::int16_t LightMap::at(Vec2 point_mm) const {
-    Vec2 const offset = point_mm - origin_mm;
-    // Clamped first: converting a float that is too large to an integer gives different results on different
-    // processors.
-    auto const cell = [](float place, int count) {
-        return static_cast<int>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
-    };
-    int const column = cell(offset.x / cell_mm.x, columns);
-    int const row = cell(offset.y / cell_mm.y, rows);
-    return level[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
+    return level[cell_under(*this, point_mm)];
 }
 
 std::size_t count_of_robots(World const& world) {
