@@ -36,7 +36,7 @@ arrow::Result<std::unique_ptr<UnfinishedFile>> UnfinishedFile::start(int descrip
     ARROW_RETURN_NOT_OK(file->stream_->Write(kFileMagic.data(), kFileMagic.size()));
     ARROW_ASSIGN_OR_RAISE(file->writer_, arrow::ipc::MakeStreamWriter(file->stream_, marked(*schema), options));
     // The schema is written with the first batch only, but a file without rows must also be readable.
-    ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema));
+    ARROW_ASSIGN_OR_RAISE(auto const nothing, arrow::RecordBatch::MakeEmpty(schema, memory));
     ARROW_RETURN_NOT_OK(file->writer_->WriteRecordBatch(*nothing));
     // The head is written before the old contents are cut off, so that the file never lacks it. A reader that comes
     // just then may find a part of the head, or rows of the older file behind it, which it takes for torn ones.
