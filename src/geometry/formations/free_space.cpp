@@ -24,6 +24,12 @@ std::size_t count_edges(Arena const& arena) {
     return count;
 }
 
+/// How many cells of the grid there are for each mm.
+Vec2 per_mm(Vec2 size_mm) {
+    constexpr auto kCells = static_cast<float>(kCellsPerSide);
+    return {kCells / size_mm.x, kCells / size_mm.y};
+}
+
 double area_of(Box box) {
     return static_cast<double>(box.size().x) * static_cast<double>(box.size().y);
 }
@@ -32,6 +38,7 @@ double area_of(Box box) {
 
 FreeSpace::FreeSpace(Arena const& arena, std::span<Obstacle const> obstacles)
     : bounds_(arena.bounds),
+      cells_per_mm_(per_mm(arena.bounds.size())),
       arena_share_(arena.area_mm2 / area_of(arena.bounds)),
       bands_(arena.bounds, count_edges(arena)),
       obstacles_(obstacles, arena.bounds) {
@@ -62,9 +69,8 @@ void FreeSpace::add_walls(Polygon const& polygon, bool is_hole) {
 
 std::size_t FreeSpace::cell_at(Vec2 point) const {
     constexpr auto kMost = static_cast<float>(kCellsPerSide - 1);
-    Vec2 const size = bounds_.size();
-    float const column = (point.x - bounds_.min.x) / size.x * static_cast<float>(kCellsPerSide);
-    float const row = (point.y - bounds_.min.y) / size.y * static_cast<float>(kCellsPerSide);
+    float const column = (point.x - bounds_.min.x) * cells_per_mm_.x;
+    float const row = (point.y - bounds_.min.y) * cells_per_mm_.y;
     return static_cast<std::size_t>(std::clamp(row, 0.0F, kMost)) * kCellsPerSide +
            static_cast<std::size_t>(std::clamp(column, 0.0F, kMost));
 }

@@ -53,6 +53,7 @@ private:
     Wall const* nearest_wall_within(Vec2 point, float reach) const;
 
     Box bounds_;
+    Vec2 cells_per_mm_;   // of the grid
     double arena_share_;  // of the bounding box
     std::vector<Wall> walls_;
     std::vector<double> length_up_to_;  // of the walls, added up

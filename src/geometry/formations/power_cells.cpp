@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kPointsPerLeaf = 48;  // at most, on average
 constexpr int kMostLevels = 10;
-constexpr float kDoubt = 1.0e-5F;  // of squared lengths: their rounding is far below
+constexpr std::uint32_t kAtATime = 32;  // points whose sites are found together
+constexpr float kDoubt = 1.0e-5F;       // of squared lengths: their rounding is far below
 
 /// Which of 2^levels equal intervals of a range a value is in.
 std::uint32_t interval_of(float value, float min, float size, int levels) {
@@ -53,7 +54,7 @@ struct PowerCells::Search {
         float power(Vec2 point_mm) const { return squared_length(place_mm - point_mm) - weight_mm2; }
     };
 
-    std::vector<Candidate> candidates;  // of the parts of the tree that are being looked at, one after the other
+    std::vector<Candidate> candidates;  // of the parts of the tree that are being looked at, and room for more
     std::vector<PointSum> sums;
 
     /// The nearest of a point among the candidates from `first` to `end`.
@@ -68,16 +69,48 @@ struct PowerCells::Search {
         return candidates[best];
     }
 
-    /// Repeats, at the end, the candidates from `first` on that may be the nearest of a point in a box.
-    void keep_near(Box const& box_mm, std::size_t first) {
-        std::size_t const end = candidates.size();
+    /// Adds up to kAtATime points, each to the cell of the nearest of the candidates from `first` to `end`. Which that
+    /// is, is found for several points by each instruction; the sums are added up one after the other.
+    void add_points(std::span<Vec2 const> points_mm, std::size_t first, std::size_t end) {
+        std::array<float, kAtATime> x_mm;
+        std::array<float, kAtATime> y_mm;
+        std::array<float, kAtATime> least;
+        std::array<std::uint32_t, kAtATime> best;
+        std::size_t const count = points_mm.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            x_mm[i] = points_mm[i].x;
+            y_mm[i] = points_mm[i].y;
+        }
+        Candidate const start = candidates[first];
+        for (std::size_t i = 0; i < count; ++i) {
+            least[i] = start.power({x_mm[i], y_mm[i]});
+            best[i] = start.site;
+        }
+        for (std::size_t c = first + 1; c < end; ++c) {
+            Candidate const candidate = candidates[c];
+            for (std::size_t i = 0; i < count; ++i) {
+                float const own = candidate.power({x_mm[i], y_mm[i]});
+                best[i] = own < least[i] ? candidate.site : best[i];
+                least[i] = std::min(own, least[i]);
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            sums[best[i]].add({.x_mm = x_mm[i], .y_mm = y_mm[i], .count = 1});
+        }
+    }
+
+    /// Repeats, from `end` on, the candidates from `first` to `end` that may be the nearest of a point in a box. Returns
+    /// where these end.
+    std::size_t keep_near(Box const& box_mm, std::size_t first, std::size_t end) {
+        if (candidates.size() < 2 * end - first) {  // at most
+            candidates.resize(2 * end - first);
+        }
         Vec2 const centre = box_mm.centre();
         Vec2 const half = 0.5F * box_mm.size();
         Candidate const best = nearest(centre, first, end);
         Vec2 const to_best = best.place_mm - centre;
         float const best_power = best.power(centre);
         float const doubt_of_best = kDoubt * (squared_length(to_best) + squared_length(half));
-        candidates.resize(2 * end - first);  // at most
         std::size_t kept = end;
         for (std::size_t i = first; i < end; ++i) {
             Candidate const own = candidates[i];
@@ -89,7 +122,7 @@ struct PowerCells::Search {
             candidates[kept] = own;
             kept += own.power(centre) - best_power - most_gained <= doubt ? 1 : 0;
         }
-        candidates.resize(kept);
+        return kept;
     }
 };
 
@@ -133,28 +166,25 @@ PowerCells::PowerCells(Box const& bounds_mm, std::span<Vec2 const> points_mm)
     }
 }
 
-void PowerCells::visit(Search& search, int number, std::uint32_t place, Box const& box_mm,
-                       std::size_t first_candidate) const {
+void PowerCells::visit(Search& search, int number, std::uint32_t place, Box const& box_mm, std::size_t first_candidate,
+                       std::size_t end_candidate) const {
     Node const& node = level(number)[place];
     if (node.sum.count == 0) {
         return;
     }
-    std::size_t const first = search.candidates.size();
-    search.keep_near(box_mm, first_candidate);
-    std::size_t const end = search.candidates.size();
+    std::size_t const first = end_candidate;  // of those that are kept
+    std::size_t const end = search.keep_near(box_mm, first_candidate, end_candidate);
     if (end - first == 1) {
         search.sums[search.candidates[first].site].add(node.sum);
     } else if (static_cast<std::size_t>(number) + 1 == levels_.size()) {
-        for (std::uint32_t i = node.first; i < node.end; ++i) {
-            Vec2 const point = points_mm_[i];
-            search.sums[search.nearest(point, first, end).site].add({.x_mm = point.x, .y_mm = point.y, .count = 1});
+        for (std::uint32_t i = node.first; i < node.end; i += kAtATime) {
+            search.add_points(std::span(points_mm_).subspan(i, std::min(kAtATime, node.end - i)), first, end);
         }
     } else {
         for (std::uint32_t part = 0; part < 4; ++part) {
-            visit(search, number + 1, 4 * place + part, quarter(box_mm, part), first);
+            visit(search, number + 1, 4 * place + part, quarter(box_mm, part), first, end);
         }
     }
-    search.candidates.resize(first);
 }
 
 std::vector<PointSum> PowerCells::sums(std::span<Vec2 const> sites_mm, std::span<float const> weights_mm2) const {
@@ -164,7 +194,7 @@ std::vector<PointSum> PowerCells::sums(std::span<Vec2 const> sites_mm, std::span
     for (std::uint32_t site = 0; site < sites_mm.size(); ++site) {
         search.candidates.push_back({.place_mm = sites_mm[site], .weight_mm2 = weights_mm2[site], .site = site});
     }
-    visit(search, 0, 0, bounds_mm_, 0);
+    visit(search, 0, 0, bounds_mm_, 0, sites_mm.size());
     return std::move(search.sums);
 }
 

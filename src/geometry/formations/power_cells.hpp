@@ -46,7 +46,9 @@ private:
     };
     struct Search;
 
-    void visit(Search& search, int level, std::uint32_t place, Box const& box_mm, std::size_t first_candidate) const;
+    /// Looks at a part of the tree, for which the candidates are those from `first_candidate` to `end_candidate`.
+    void visit(Search& search, int level, std::uint32_t place, Box const& box_mm, std::size_t first_candidate,
+               std::size_t end_candidate) const;
     std::vector<Node> const& level(int number) const { return levels_[static_cast<std::size_t>(number)]; }
 
     Box bounds_mm_;
