@@ -109,7 +109,7 @@ def all_held(locks: Sequence[Lock]) -> Iterator[None]:
     try:
         for lock in locks:
             held.append(lock)  # before it is: Ctrl-C may come in between
-            if not lock.acquire(blocking=False):
+            if not lock.acquire(False):  # by name, the argument takes as long as the rest
                 held.pop()
                 raise SimulationError(IN_USE)
         yield
