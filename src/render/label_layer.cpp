@@ -16,18 +16,18 @@ constexpr float kLargestFontPx = 60.0F;
 
 void draw_labels(Scene const& scene, Text& text) {
     Scenery const& scenery = scene.scenery();
-    for (std::size_t robot = 0; robot < scenery.robot_id.size(); ++robot) {
-        std::uint32_t const body = scenery.robot_body[robot];
-        if (body == kNone) {
-            continue;
+    for (Object const& object : scenery.objects) {
+        if (object.robot == kNone || object.body == kNone || object.body_count != 1) {
+            continue;  // no robot, or a wall or membrane with a program
         }
+        std::uint32_t const body = object.body;
         float const radius_mm = scenery.body_radius_mm[body];
         float const radius_px = scene.to_pixels(radius_mm);
         int const font = whole(std::clamp(kSizeInBody * radius_px, kLeastFontPx, kLargestFontPx));
-        std::string const label = std::to_string(scenery.robot_id[robot]);
+        std::string const label = std::to_string(scenery.robot_id[object.robot]);
         int const width = text.width(label, font);
         bool const is_inside = static_cast<float>(width) < 1.8F * radius_px;
-        Pixel const below = is_inside ? body_colour(scene, static_cast<std::uint32_t>(robot)) : scene.colours.floor;
+        Pixel const below = is_inside ? body_colour(scene, object.robot) : scene.colours.floor;
         scene.for_each_image(scene.snapshot.position_mm[body], radius_mm, [&](Vec2 at_mm) {
             Vec2 const centre = scene.to_pixels(at_mm);
             int const left = whole(centre.x) + (is_inside ? -width / 2 : whole(radius_px) + 1);

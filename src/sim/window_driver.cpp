@@ -201,6 +201,7 @@ std::optional<UserFailure> WindowDriver::go_back(double time_s) {
         failure = simulation_.step();
         taker_.follow_trails();
     }
+    log().info("went back to t = {:.4f} s", simulation_.world().time_s());
     return failure;
 }
 

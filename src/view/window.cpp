@@ -308,6 +308,7 @@ private:
             options_.pause_when = condition->condition;
         } else if (std::holds_alternative<StepOnce>(command)) {
             state_.status.paused = true;
+            looked_at_s_.reset();
         } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
             state_.status.asked_speed_up = speed->factor;
         }

@@ -71,7 +71,9 @@ def test_robots_are_drawn_where_they_are_in_the_colour_of_their_led(
         assert colour_at(picture, 500, 500) == FLOOR
 
 
-@pytest.mark.parametrize("key", ["F1", "F2", "F5", "F6", "F7", "F8", "F9", "plus", "minus", "KP_Add", "KP_Subtract"])
+@pytest.mark.parametrize(
+    "key", ["F1", "F2", "F5", "F6", "F7", "F8", "F9", "plus", "minus", "KP_Add", "KP_Subtract", *"lvdt"]
+)
 def test_key_changes_the_picture(display: Display, window_program: Path, tmp_path: Path, key: str) -> None:
     # A light that is not even, and robots that have left trails.
     lamp = {"type": "static_light", "geometry": "disk", "radius": 200, "value": 1000, "x": 500, "y": 500}
