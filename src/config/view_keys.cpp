@@ -25,8 +25,8 @@ std::span<Key<ViewOptions> const> view_option_keys() {
         K{"heard", &ViewOptions::heard, any(), "",
           "Arrows from senders to robots that got a message of theirs in the last second; older ones are fainter."},
         K{"color_by", &ViewOptions::color_by, any(), "",
-          "A value that colours robots in place of their head LEDs: speed (mm/s), x, y, angle, light, or a column of the "
-          "program that holds numbers. Colours go from the lowest to the highest value so far. Empty: none."},
+          "A value that colours robots in place of their head LEDs: speed (mm/s), x, y, angle, light, or a column of "
+          "the program that holds numbers. Colours go from the lowest to the highest value so far. Empty: none."},
         K{"heat_map", &ViewOptions::heat_map, any(), "",
           "density: robots per square metre on the floor, smoothed over 4 % of the longer side; or a value, as for "
           "color_by: its mean among the robots nearby. Empty: none."},
@@ -43,8 +43,9 @@ std::span<Key<ViewOptions> const> view_option_keys() {
         K{"history", &ViewOptions::history_s, between(0, 3600), "s",
           "Simulated time that the window keeps, to look at it again."},
         K{"pause_when", &ViewOptions::pause_when, any(), "",
-          "The window pauses when this becomes true of a robot: values, as for color_by, numbers, + - * /, comparisons, "
-          "and, or, not, such as \"speed < 1 and heard > 10\". Looked at when rows are recorded. Empty: never."},
+          "The window pauses when this becomes true of a robot: values, as for color_by, numbers, + - * /, "
+          "comparisons, and, or, not, such as \"speed < 1 and heard > 10\". Looked at when rows are recorded. "
+          "Empty: never."},
     };
     return keys;
 }

@@ -17,7 +17,7 @@ public:
     /// Takes what was delivered in a step: messages that found room in the queue of a receiver.
     void note(World const& world, DeliveryLog const& log);
 
-    /// Those of the last kHeardForS before a time, each pair of sender and receiver once, in the order of their indices.
+    /// Those of the last kHeardForS before a time, each pair of sender and receiver once, by their indices.
     std::vector<HeardMessage> until(double time_s);
 
 private:

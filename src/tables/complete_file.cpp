@@ -40,9 +40,10 @@ void sync_folder_of(std::filesystem::path const& path) {
     }
 }
 
-/// Puts a file in the place of another one, which is gone afterwards; fails with false and errno. A file that is renamed
-/// onto another is written to the disk at once by ext4 (auto_da_alloc), and a batch, which removes it soon, waits for
-/// milliseconds. A file that need not be synced is exchanged with the other one instead, where the system can do that.
+/// Puts a file in the place of another one, which is gone afterwards; fails with false and errno. A file that is
+/// renamed onto another is written to the disk at once by ext4 (auto_da_alloc), and a batch, which removes it soon,
+/// waits for milliseconds. A file that need not be synced is exchanged with the other one instead, where the system can
+/// do that.
 bool put_in_place(std::filesystem::path const& file, std::filesystem::path const& other, bool is_synced) {
 #ifdef RENAME_EXCHANGE
     if (!is_synced && renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0) {

@@ -99,8 +99,8 @@ struct PowerCells::Search {
         }
     }
 
-    /// Repeats, from `end` on, the candidates from `first` to `end` that may be the nearest of a point in a box. Returns
-    /// where these end.
+    /// Repeats, from `end` on, the candidates from `first` to `end` that may be the nearest of a point in a box.
+    /// Returns where these end.
     std::size_t keep_near(Box const& box_mm, std::size_t first, std::size_t end) {
         if (candidates.size() < 2 * end - first) {  // at most
             candidates.resize(2 * end - first);
