@@ -347,12 +347,15 @@ void read_top_level(MapReader& reader, Scenario& scenario) {
     warn_without_formation(reader, scenario.formation);
     reader.collect([&] { scenario.magnetometer = read_magnetometer(reader); });
     reader.read(output_keys(), scenario.output);
-    reader.read(view_keys(), scenario.view);
-    if (scenario.view.show_communication_channels) {
-        scenario.view.links = scenario.view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
+    read_view(reader, scenario.view);
+}
+
+void read_view(MapReader& reader, ViewConfig& view) {
+    reader.read(view_keys(), view);
+    if (view.show_communication_channels) {
+        view.links = view.show_communication_channels_above_all ? LinkLayer::above : LinkLayer::below;
     }
-    reader.collect(
-        [&] { reader.read_map("view", kViewMap, [&](MapReader& map) { read_view_map(map, scenario.view); }); });
+    reader.collect([&] { reader.read_map("view", kViewMap, [&](MapReader& map) { read_view_map(map, view); }); });
 }
 
 }  // namespace pogosim

@@ -61,4 +61,7 @@ void read_view_map(MapReader& reader, ViewOptions& options);
 std::string view_as_yaml(ViewOptions const& options);
 ViewOptions view_from_yaml(std::string const& yaml);
 
+/// Reads that map, the older keys for what is in it, and those of the window, from the top level of a configuration.
+void read_view(MapReader& reader, ViewConfig& view);
+
 }  // namespace pogosim

@@ -16,6 +16,7 @@
 #include "config/scenario.hpp"
 #include "device/sensing.hpp"
 #include "host/hosted_run.hpp"
+#include "host/pixels.hpp"
 #include "host/status.hpp"
 #include "pogosim/version.h"
 #include "render/canvas.hpp"
@@ -160,16 +161,8 @@ char const* pogosim_run_messages(pogosim_run* run) {
 
 int pogosim_run_draw(pogosim_run* run, int32_t width_px, int32_t height_px, uint8_t* rgb) {
     return with_status_of(*run, [&] {
-        if (std::min(width_px, height_px) < 1 || std::max(width_px, height_px) > kMostPixels) {
-            throw ConfigError(fmt::format("a picture has 1 to {} pixels in a row, and as many rows; found {} x {}",
-                                          kMostPixels, width_px, height_px));
-        }
-        Canvas const canvas = run->simulation().picture({width_px, height_px});
-        for (Pixel const pixel : canvas.pixels()) {
-            *rgb++ = static_cast<uint8_t>(pixel >> 16U);
-            *rgb++ = static_cast<uint8_t>(pixel >> 8U);
-            *rgb++ = static_cast<uint8_t>(pixel);
-        }
+        Canvas const canvas = run->simulation().picture(checked_size(width_px, height_px));
+        copy_pixels(canvas, rgb, 3 * static_cast<std::size_t>(width_px));
         return POGOSIM_OK;
     });
 }

@@ -187,7 +187,7 @@ void Background::draw_programmed_walls(Camera const& camera, Snapshot const& sna
 std::vector<Pixel> Background::wall_colours(Snapshot const& snapshot, Colours const& colours) const {
     std::vector<Pixel> walls;
     for (Outline const& outline : snapshot.scenery->outlines) {
-        walls.push_back(colours.of_led(snapshot.led[outline.robot][0], colours.dark_wall));
+        walls.push_back(shown_colour(snapshot, colours, snapshot.led[outline.robot][0], colours.dark_wall));
     }
     return walls;
 }

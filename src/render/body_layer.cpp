@@ -42,6 +42,13 @@ bool are_usual(std::vector<Part> const& leds) {
     return leds == usual;
 }
 
+/// The colour of an object that runs no program.
+Pixel colour_without_leds(Scene const& scene, Object const& object) {
+    std::vector<Rgb> const& shown = scene.snapshot.shown_rgb;
+    auto const index = static_cast<std::size_t>(&object - scene.scenery().objects.data());
+    return shown.empty() ? scene.colours.no_led : opaque(shown[index]);
+}
+
 Figure figure_of(Scene const& scene, Object const& object) {
     Scenery const& scenery = scene.scenery();
     Snapshot const& snapshot = scene.snapshot;
@@ -62,10 +69,12 @@ Figure figure_of(Scene const& scene, Object const& object) {
     if (object.robot != kNone) {
         figure.led = &snapshot.led[object.robot];
         figure.colour = body_colour(scene, object.robot);
-        figure.glows = !snapshot.colours && is_lit((*figure.led)[0]);
+        figure.glows = !snapshot.colours && snapshot.shown_rgb.empty() && is_lit((*figure.led)[0]);
         auto const& spec = scenery.categories[object.category].spec.robot;
         figure.led_parts = &spec->model.leds;
         figure.leds_turned = spec->rotate_leds_45_deg && are_usual(spec->model.leds);
+    } else {
+        figure.colour = colour_without_leds(scene, object);
     }
     return figure;
 }
@@ -164,7 +173,7 @@ void draw_membrane(Scene const& scene, Object const& object, Coverage& scratch) 
         membrane.segments ? 0.5F * membrane.thickness_mm.value_or(membrane.radius_mm) : membrane.radius_mm;
     float const dot_mm = half_mm * (membrane.segments ? 0.35F : 1.0F);
     float const line_mm = 2.0F * half_mm / (membrane.segments ? 1.0F : 3.0F);
-    Pixel const colour = object.robot == kNone ? scene.colours.no_led : body_colour(scene, object.robot);
+    Pixel const colour = object.robot == kNone ? colour_without_leds(scene, object) : body_colour(scene, object.robot);
     Polygon const centres = unrolled(scene, object);
     Box around = bounding_box(centres);
     around.min = around.min - Vec2{half_mm, half_mm};
@@ -201,7 +210,7 @@ void for_each_rigid_object(Scene const& scene, Draw const& draw) {
 
 Pixel body_colour(Scene const& scene, std::uint32_t robot) {
     if (!scene.snapshot.colours) {
-        return scene.colours.of_led(scene.snapshot.led[robot][0]);
+        return shown_colour(scene.snapshot, scene.colours, scene.snapshot.led[robot][0], scene.colours.dark_led);
     }
     float const value = scene.snapshot.colours->values[robot];
     ColourKey const key = key_of(*scene.snapshot.colours);

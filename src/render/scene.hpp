@@ -12,6 +12,15 @@
 
 namespace pogosim {
 
+constexpr Pixel opaque(Rgb colour) {
+    return 0xFF000000U | static_cast<Pixel>(colour.r << 16U | colour.g << 8U | colour.b);
+}
+
+/// The colour that a picture has for that of a head LED, now or earlier; `dark`: of one that is off.
+inline Pixel shown_colour(Snapshot const& snapshot, Colours const& colours, Rgb led, Pixel dark) {
+    return snapshot.shown_rgb.empty() ? colours.of_led(led, dark) : opaque(led);
+}
+
 struct Scene {
     Canvas& canvas;
     Camera const& camera;

@@ -100,6 +100,7 @@ struct Snapshot {
     std::vector<HeardMessage> heard{};      // in the last second; empty: not wanted
     std::optional<RobotColumn> colours{};   // that bodies have in place of the LEDs'
     std::optional<RobotColumn> heat_map{};  // absent: not wanted, or of the density of robots
+    std::vector<Rgb> shown_rgb{};  // of objects, if their colours are none of LEDs, which glow; `led` has those, too
 };
 
 }  // namespace pogosim

@@ -19,9 +19,9 @@ struct Pen {
 };
 
 /// Opacity of a trail by age: 0 at its end, 1 at the robot.
-Pen pen_at(Scene const& scene, float freshness, float unit_px, Rgb led) {
+Pen pen_at(float freshness, float unit_px, Pixel colour) {
     float const opacity = 0.04F + 0.7F * freshness * freshness * freshness;
-    return {(0.5F + 0.9F * freshness) * unit_px, with_opacity(scene.colours.of_led(led), opacity)};
+    return {(0.5F + 0.9F * freshness) * unit_px, with_opacity(colour, opacity)};
 }
 
 /// Whether a piece of a trail is still too short to be drawn, or straight enough to become longer.
@@ -39,8 +39,8 @@ void draw_trails(Scene const& scene) {
     Trails const& trails = *scene.snapshot.trails;
     Scenery const& scenery = scene.scenery();
     Vec2 const half_arena = 0.5F * scenery.arena.bounds.size();
-    auto const crosses_seam = [&](Vec2 a, Vec2 b) {
-        return scenery.periodic && (std::abs(a.x - b.x) > half_arena.x || std::abs(a.y - b.y) > half_arena.y);
+    auto const is_far = [&](Vec2 a, Vec2 b) {
+        return std::abs(a.x - b.x) > half_arena.x || std::abs(a.y - b.y) > half_arena.y;
     };
     std::size_t const robots = std::min(trails.robot_count(), scenery.robot_body.size());
     for (std::size_t robot = 0; robot < robots; ++robot) {
@@ -56,7 +56,20 @@ void draw_trails(Scene const& scene) {
         auto const go_to = [&](TrailPoint const& point, std::size_t age, bool is_end) {
             Vec2 const here = scene.to_pixels(point.position_mm);
             Vec2 const piece = here - drawn_to;
-            if (crosses_seam(last.position_mm, point.position_mm)) {
+            auto const pen_here = [&] {
+                float const freshness = 1.0F - static_cast<float>(age) / static_cast<float>(trails.fading());
+                return pen_at(freshness, unit_px,
+                              shown_colour(scene.snapshot, scene.colours, point.led, scene.colours.dark_led));
+            };
+            if (is_far(last.position_mm, point.position_mm)) {
+                // Across a seam: both ends of the shortest way. Else it has been put there, which leaves no trail.
+                if (scenery.periodic) {
+                    Pen const pen = pen_here();
+                    Vec2 const step_px = scene.camera.scale_px_mm * scene.from_to(last.position_mm, point.position_mm);
+                    scene.canvas.chain_link(drawn_to, scene.to_pixels(last.position_mm) + step_px, pen.width_px,
+                                            pen.colour);
+                    scene.canvas.chain_link(here - step_px, here, pen.width_px, pen.colour);
+                }
                 drawn_to = here;
             } else {
                 first_step = first_step == Vec2{} ? piece : first_step;
@@ -64,8 +77,7 @@ void draw_trails(Scene const& scene) {
                     last.position_mm = point.position_mm;
                     return;
                 }
-                float const freshness = 1.0F - static_cast<float>(age) / static_cast<float>(Trails::kLength);
-                Pen const pen = pen_at(scene, freshness, unit_px, point.led);
+                Pen const pen = pen_here();
                 scene.canvas.chain_link(drawn_to, here, pen.width_px, pen.colour);
                 drawn_to = here;
             }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "world/world.hpp"
@@ -28,6 +29,13 @@ public:
     /// Forgets all positions.
     void clear() { *this = Trails(most_bytes_); }
 
+    /// Takes over trails as a recording has them: so many points of each robot, one robot after the other, oldest
+    /// first. Each keeps its last kLength points. They fade over `fading` points, at least 1.
+    void take(std::span<TrailPoint const> points, std::span<std::uint32_t const> counts, std::size_t fading);
+
+    /// Over how many points a trail fades to nothing.
+    std::size_t fading() const { return fading_; }
+
     std::size_t robot_count() const { return count_.size(); }
     /// Points of one robot, at most kLength.
     std::size_t size(std::size_t robot) const { return count_[robot]; }
@@ -41,6 +49,7 @@ private:
 
     std::size_t most_bytes_;
     std::size_t length_ = kLength;  // of each buffer
+    std::size_t fading_ = kLength;
     std::vector<TrailPoint> points_;
     std::vector<std::uint16_t> count_;  // by robot
     std::vector<std::uint16_t> next_;   // by robot: where the next point goes in its buffer

@@ -312,7 +312,7 @@ def declared_functions() -> set[str]:
     """Return the names of functions and macros with arguments in the headers for programs, read without doxygen."""
     found: set[str] = set()
     for header in (ROOT / "include" / "pogosim").rglob("*.h"):
-        if header.name in ("host.h", "program.h"):  # for other processes, and for the simulator itself
+        if header.name in ("host.h", "painter.h", "program.h"):  # for other processes, and for the simulator itself
             continue
         text = re.sub(r"\\\n", " ", header.read_text())
         found |= set(

@@ -34,7 +34,7 @@ HARMLESS = {
 
 
 # What hosts and the program's part of the simulator call, not programs.
-NOT_FOR_PROGRAMS = {"host.h", "program.h"}
+NOT_FOR_PROGRAMS = {"host.h", "painter.h", "program.h"}
 
 # Behind macros and inline functions that name every argument.
 NOT_CALLED_BY_PROGRAMS = {

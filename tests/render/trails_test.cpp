@@ -1,6 +1,9 @@
 #include "render/trails.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -118,6 +121,34 @@ TEST(Trail, LeavesOutPositionsThatAreNotFinite) {
         trails.follow(world);
     }
     EXPECT_EQ(trails.size(0), 1U);
+}
+
+TEST(Trail, OfARecordingHasItsPointsNewestFirst) {
+    std::vector<TrailPoint> const points{{{1, 0}, {}}, {{2, 0}, {}}, {{3, 0}, {25, 0, 0}}};
+    std::vector<std::uint32_t> const counts{2, 0, 1};
+    Trails trails;
+    trails.take(points, counts, 10);
+    ASSERT_EQ(trails.robot_count(), 3);
+    EXPECT_EQ(trails.fading(), 10);
+    ASSERT_EQ(trails.size(0), 2);
+    EXPECT_EQ(trails.point(0, 0).position_mm, (Vec2{2, 0}));
+    EXPECT_EQ(trails.point(0, 1).position_mm, (Vec2{1, 0}));
+    EXPECT_EQ(trails.size(1), 0);
+    ASSERT_EQ(trails.size(2), 1);
+    EXPECT_EQ(trails.point(2, 0).led, (Rgb{25, 0, 0}));
+}
+
+TEST(Trail, OfARecordingKeepsItsLastPoints) {
+    std::vector<TrailPoint> points;
+    for (std::size_t i = 0; i < Trails::kLength + 3; ++i) {
+        points.push_back({{static_cast<float>(i), 0}, {}});
+    }
+    std::vector<std::uint32_t> const counts{static_cast<std::uint32_t>(points.size())};
+    Trails trails;
+    trails.take(points, counts, 1);
+    ASSERT_EQ(trails.size(0), Trails::kLength);
+    EXPECT_EQ(trails.point(0, 0).position_mm.x, static_cast<float>(Trails::kLength + 2));
+    EXPECT_EQ(trails.point(0, Trails::kLength - 1).position_mm.x, 3.0F);
 }
 
 }  // namespace
