@@ -20,6 +20,7 @@ typedef struct pogosim_painter pogosim_painter;
 struct pogosim_stage {
     /// YAML, a map of:
     ///   view       keys of a configuration that say what pictures show: `view`, and the older show_time and the like
+    ///   options    keys of `view` that prevail over these; others are a mistake
     ///   periodic   true: what leaves the box around the outer wall comes back on the other side
     ///   leds       true: colours are those of head LEDs, which glow; false: they are shown as they are
     ///   light_map  columns and rows of the levels of light, over the box around the outer wall

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,7 @@ class Kind:
     position_mm: tuple[float, float] | None = None  # x and y of a wall, where both are given
     talks: bool = True  # it has a rigid body and a program, so lines may join it to others near enough to hear it
     communication_radius_mm: float = 0.0  # if it talks: from an emitter to the edge of a listener; 0: mute
+    parts: tuple[dict[str, Any], ...] = field(default=(), compare=False)  # of a compound, as the configuration has them
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,11 @@ class Lamp:
     orbit_radius_mm: float = 0.0
     orbit_speed_rad_s: float = 0.0
     orbit_phase_rad: float = 0.0
+
+    @property
+    def has_place(self) -> bool:
+        """Whether it shines from a place that can be seen, not evenly everywhere."""
+        return self.shape.kind not in ("global", "arena") or self.mode == "gradient"
 
     def centre_at(self, time_s: float) -> Floats:
         """Where the lamp is, (x, y) in mm."""
@@ -155,6 +161,7 @@ def kinds_in(entries: list[Entry]) -> list[Kind]:
             position_mm=own.position_mm,
             talks=own.is_robot,
             communication_radius_mm=own.infrared_range_mm if own.is_robot else 0.0,
+            parts=tuple(part for part in own.settings.get("parts") or () if isinstance(part, dict)),
         )
         for own in bodies_of(entries)
     ]

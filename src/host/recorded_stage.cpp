@@ -60,7 +60,7 @@ DrawnKind read_kind(MapReader& reader) {
     reader.read(kind_keys(), kind);
     if (kind.role == Role::wall) {
         read_shape(reader, outline_geometry_keys(), kind.shape);
-    } else {
+    } else if (!kind.is_membrane()) {
         read_solid_shape(reader, solid_geometry_keys(), kind.shape);
     }
     reader.finish();
@@ -129,6 +129,12 @@ Description read_description(char const* text) {
         ViewConfig config;
         read_view(keys, config);
         description.view = config;
+    }
+    if (Node const* const options = reader.find("options")) {
+        reading.strict_keys = true;
+        MapReader keys(*options, "view", reading);
+        read_view_map(keys, description.view);
+        keys.finish();
     }
     reading.problems.throw_if_any();
     return description;

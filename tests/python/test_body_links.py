@@ -12,8 +12,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from pogosim.errors import PictureError
 from pogosim.film.first_picture import first_picture
+from pogosim.film.frames import ABOVE_PX, FILLED, Frames
 from pogosim.film.replay import replay_data
-from pogosim.film.stills import Look, Stills
 from pogosim.picture import layers
 from pogosim.picture.body_links import BodyLinks, placed_at
 from pogosim.picture.palette import PALETTE, tension_colours
@@ -98,25 +98,23 @@ def test_picture_has_a_line_for_each_link(tmp_path: Path) -> None:
     np.testing.assert_allclose(drawn[0], [[833.333, 300.0], [500.0, 900.0]], atol=1e-3)
 
 
-def colour_at(frame: bytes, side: int, x: int, y: int) -> list[int]:
-    picture = np.frombuffer(frame, dtype=np.uint8).reshape(side, side, 4)
-    return [int(channel) for channel in picture[y, x, :3]]
-
-
 def test_frame_of_a_film_has_the_links_of_its_time(tmp_path: Path) -> None:
     changes = {"made": {**link_table(), "time_s": [9, 9]}, "cut": {"link": [1], "time_s": [1.0]}}
     recording = read_recording(linked(tmp_path / "a.feather", link_table(), changes))
-    stills = Stills(recording, (400, 400), Look())
-    before, after = stills.frame(0.0), stills.frame(1.5)
+    frames = Frames(recording, (400, 400 + ABOVE_PX), {})
 
-    def on_the_rod(frame: bytes, y_mm: float) -> list[int]:
+    def on_the_rod(time_s: float, y_mm: float) -> list[int]:
         """Halfway between robot 2, at this y, and the place that it is linked to."""
-        x, y = stills.axes.transData.transform([(833.333 + 500.0) / 2.0, (y_mm + 900.0) / 2.0])
-        return colour_at(frame, 400, int(x), int(400 - y))
+        frame = np.empty((400 + ABOVE_PX, 400, 3), np.uint8)
+        frames.draw(time_s, frame)
+        scale = FILLED * 400 / 1000
+        x = 200 + scale * ((833.333 + 500.0) / 2.0 - 500.0)
+        y = ABOVE_PX + 200 + scale * ((y_mm + 900.0) / 2.0 - 500.0)
+        return [int(channel) for channel in frame[int(y), int(x)]]
 
     at_rest = [round(255 * channel) for channel in to_rgb(PALETTE["link_at_rest"])]
-    np.testing.assert_allclose(on_the_rod(before, 100.0), at_rest, atol=60)
-    assert max(on_the_rod(after, 250.0)) < 60  # the floor
+    np.testing.assert_allclose(on_the_rod(0.0, 100.0), at_rest, atol=60)
+    assert max(on_the_rod(1.5, 250.0)) < 60  # the floor
 
 
 def test_replay_has_the_links_and_its_first_picture_shows_them(tmp_path: Path) -> None:

@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
+import re
 import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import pytest
-from pogosim.film.brush import DISK
+from PIL import Image
+from pogosim import Simulation
+from pogosim.errors import PictureError
+from pogosim.film.ahead import made_ahead
 from pogosim.film.command import main
+from pogosim.film.frames import ABOVE_PX, FILLED, Frames
 from pogosim.film.making import frame_times
-from pogosim.film.stills import Look, Stills, size_for
+from pogosim.film.moments import Moments
+from pogosim.film.painter import Painter, Stage
 from pogosim.film.timeline import Timeline, timeline_of
-from pogosim.picture import layers
-from pogosim.picture.links import links_at_end
-from pogosim.picture.swarm import OBJECT, Recording, read_recording
+from pogosim.picture.swarm import OBJECT, RGB, Recording, read_recording
 from pogosim.utils import load_dataframe
-from recordings import walkers, write
+from recordings import SIDE_MM, walkers, write
+from running import example, run
 
 
 @pytest.fixture
@@ -118,35 +128,71 @@ def test_robot_without_a_row_stays_where_it_was_and_is_not_there_before_its_firs
     assert line.at(2.0)["y"].tolist() == [300.0] * 3
 
 
-def pixels(stills: Stills, time_s: float) -> npt.NDArray[np.uint8]:
-    frame = np.frombuffer(stills.frame(time_s), np.uint8).reshape(stills.size[1], stills.size[0], 4)
-    return frame[..., :3].astype(int)
+def frames_of(recording: Recording, side: int = 400, tail_s: float | None = None, **view: Any) -> Frames:
+    """Frames of a run, with a picture of so many pixels in both directions."""
+    shown = {"trails": tail_s is not None, "time": False, "scale_bar": False, **view}
+    return Frames(recording, (side, side + ABOVE_PX), shown, tail_s)
 
 
-def height_of_red(image: npt.NDArray[np.uint8]) -> float:
+def pixels(frames: Frames, time_s: float) -> npt.NDArray[np.int64]:
+    frame = np.empty((frames.size[1], frames.size[0], 3), np.uint8)
+    frames.draw(time_s, frame)
+    return frame.astype(int)
+
+
+def scale_of(frames: Frames) -> float:
+    """Pixels per mm."""
+    return FILLED * min(frames.picture_size) / SIDE_MM
+
+
+def place_of(frames: Frames, x_mm: float, y_mm: float) -> tuple[int, int]:
+    """Row and column of a place in the arena."""
+    width, height = frames.picture_size
+    x = width / 2 + scale_of(frames) * (x_mm - SIDE_MM / 2)
+    return int(ABOVE_PX + height / 2 + scale_of(frames) * (y_mm - SIDE_MM / 2)), int(x)
+
+
+def middle_of_red(image: npt.NDArray[np.int64]) -> tuple[float, float]:
+    """Row and column of what is as red as robot 0."""
     mask = (image[..., 0] > 180) & (image[..., 1:] < 50).all(axis=-1)
     assert mask.sum() > 20
-    return float(np.nonzero(mask)[0].mean())
+    rows, columns = np.nonzero(mask)
+    return float(rows.mean()) + 0.5, float(columns.mean()) + 0.5
 
 
-def test_frames_show_robots_on_their_way_and_forget_where_they_were(data: Path) -> None:
-    recording = read_recording(data)
-    stills = Stills(recording, size_for(recording, None, is_even=True), Look())
-    start, quarter, end = (pixels(stills, time_s) for time_s in (0.0, 0.25, 2.0))
-    scale = (height_of_red(end) - height_of_red(start)) / 200.0
-    assert scale == pytest.approx(0.72 / 1.04, rel=0.02)  # pixels per mm
-    assert height_of_red(quarter) - height_of_red(start) == pytest.approx(25.0 * scale, abs=0.7)
-    np.testing.assert_array_equal(pixels(stills, 0.0), start)
+def test_robot_is_where_its_pose_says_in_its_colour(data: Path) -> None:
+    frames = frames_of(read_recording(data), 700)
+    for time_s in (0.0, 0.25, 2.0):
+        row, column = middle_of_red(pixels(frames, time_s))
+        scale = scale_of(frames)
+        assert column == pytest.approx(350 + scale * (1000 / 6 - 500), abs=0.5)
+        # The dark mark of the heading, 0.7 of a radius long, moves the mean upwards a little.
+        assert row == pytest.approx(ABOVE_PX + 350 + scale * (100 + 100 * time_s - 500), abs=1.5)
+    image = pixels(frames, 0.0)
+    assert image[place_of(frames, 1000 / 6, 90)].tolist() == [210, 0, 0]
+    assert image[place_of(frames, 500, 90)].tolist() == [0, 210, 0]
+    assert image[place_of(frames, 2500 / 3, 90)].tolist() == [0, 0, 210]
 
 
-def test_light_of_a_lamp_that_goes_on_appears(tmp_path: Path) -> None:
+def test_frames_forget_where_robots_were(data: Path) -> None:
+    frames = frames_of(read_recording(data))
+    start = pixels(frames, 0.0)
+    pixels(frames, 2.0)
+    np.testing.assert_array_equal(pixels(frames, 0.0), start)
+
+
+def test_light_of_a_lamp_that_goes_on_appears_where_the_configuration_shows_light(tmp_path: Path) -> None:
     lamp = {"type": "static_light", "geometry": "disk", "x": 500, "y": 800, "radius": 100, "value": 0}
     flash = {"photo_start_at": 1.0, "photo_start_duration": 0.5, "photo_start_value": 500}
     recording = read_recording(write(tmp_path / "a.feather", walkers(), {"lamp": {**lamp, **flash}}))
-    stills = Stills(recording, (400, 400), Look())
-    brightness = [pixels(stills, time_s).mean() for time_s in (0.9, 1.1, 1.6)]
-    assert brightness[1] > brightness[0] + 0.3
-    assert brightness[1] > brightness[2] + 0.3
+    frames, dark = (frames_of(recording, light_levels=shown) for shown in (True, False))
+    place = place_of(frames, 460, 800)
+    brightness = [int(pixels(frames, time_s)[place].mean()) for time_s in (0.9, 1.1, 1.6)]
+    assert brightness[1] > 60
+    assert brightness[0] == brightness[2] < 40
+    assert int(pixels(dark, 1.1)[place].mean()) < 40
+    sun = pixels(dark, 0.0)[place_of(frames, 500, 800)]
+    assert sun[0] > 200
 
 
 # ---- bad input -------------------------------------------------------------------------------------------------------
@@ -205,6 +251,8 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> str:
         ("a.html", ["--from", "1.5", "--to", "1"], "--from and --to leave nothing"),
         ("a.mp4", ["--speed", "1e-9"], "frames are too many"),
         ("a.mp4", ["--size", "10"], "160 to 8192 are possible"),
+        ("a.mp4", ["--view", "links=sideways"], "view.links: expected one of hidden, below, above, found 'sideways'"),
+        ("a.mp4", ["--view", "trials=true"], "unknown key 'view.trials'; did you mean 'trails'?"),
         ("a.html", ["--color-by", "none"], "it has no column none"),
     ],
 )
@@ -256,123 +304,263 @@ def test_film_that_fails_leaves_the_older_one(
     assert list(data.parent.glob("*pogosim-new*")) == []
 
 
-# ---- the same picture, drawn faster ----------------------------------------------------------------------------------
+# ---- the same picture as the window's --------------------------------------------------------------------------------
+
+OBJECTS: dict[str, object] = {
+    "robots": {"type": "pogobot", "nb": 12, "geometry": "disk", "radius": 26.5, "communication_radius": 80},
+    "boxes": {"type": "passive_object", "nb": 3, "geometry": "rectangle", "body_width": 90, "body_height": 40},
+    "stars": {
+        "type": "passive_object",
+        "nb": 2,
+        "geometry": "compound",
+        "parts": [
+            {"geometry": "rectangle", "body_width": 80, "body_height": 20},
+            {"geometry": "rectangle", "body_width": 20, "body_height": 80},
+        ],
+    },
+    "lamp": {"type": "static_light", "geometry": "disk", "x": 300, "y": 300, "radius": 200, "value": 500},
+}
 
 
-def mixed(folder: Path, **settings: str) -> Recording:
-    """Robots, boxes, wedges and a mute ball, some at walls, some beyond them, on curved ways."""
-    random = np.random.default_rng(3)
-    rows = walkers(24, 21)
-    time, number = rows["time"].to_numpy(), rows["robot_id"].to_numpy()
-    middle = random.uniform(0, 1000, (24, 2))[number]
-    turn = time + number
-    shapes = np.array(["robots", "robots", "robots", "boxes", "wedges", "balls"])
-    rows = rows.assign(
-        x=middle[:, 0] + 60 * np.cos(turn),
-        y=middle[:, 1] + 60 * np.sin(turn),
-        angle=np.where(number == 6, np.nan, np.angle(np.exp(1j * turn))),
-        robot_category=shapes[number % 6],
-    )
-    objects = {
-        "boxes": {"type": "active_object", "geometry": "rectangle", "body_width": 90, "body_height": 40},
-        "wedges": {"type": "pogobject", "geometry": "triangle", "side_length": 80},
-        "balls": {"type": "passive_object", "geometry": "disk", "radius": 40},
-    }
-    if settings.get("boundary_condition") == "periodic":
-        rows[["x", "y"]] %= 1000.0
-    return read_recording(write(folder / "mixed.feather", rows, objects, **settings))
+SOFT: dict[str, object] = {
+    "robots": OBJECTS["robots"],
+    "skin": {"type": "membrane", "geometry": "disk", "radius": 150, "num_dots": 40, "serialize_dot_pose": True},
+    "wall": {"type": "pogowall", "geometry": "arena"},
+}
 
 
+@pytest.mark.parametrize(
+    "view",
+    [{}, {"view": {"light_levels": True}}, {"show_time": False, "show_scale_bar": False, "show_light_levels": True}],
+    ids=["bodies", "light", "older keys"],
+)
 @pytest.mark.parametrize("boundary", ["solid", "periodic"])
-@pytest.mark.parametrize("look", [Look(), Look(links=True), Look(tail_s=3.0)], ids=["bodies", "links", "trails"])
-def test_frame_shows_what_a_picture_shows(tmp_path: Path, look: Look, boundary: str) -> None:
-    recording = mixed(tmp_path, boundary_condition=boundary)
-    stills = Stills(recording, (720, 800), look)
-    frame = pixels(stills, 6.0)[40:-45]
+@pytest.mark.parametrize("objects", [OBJECTS, SOFT], ids=["rigid", "soft"])
+def test_frame_is_the_picture_of_the_run_at_that_time(
+    tmp_path: Path, boundary: str, objects: dict[str, object], view: dict[str, object]
+) -> None:
+    settings = {
+        "objects": objects,
+        "boundary_condition": boundary,
+        "save_data_period": 0.5,
+        "data_logger_led": True,
+    }
+    settings = {**settings, "simulation_time": 2.0, "show_lateral_LEDs": False, **view}
+    result = run(example("helloworld"), tmp_path, settings)
+    assert result.code == 0, result.text
+    recording = read_recording(tmp_path / "data.feather")
+    frames = Frames(recording, (300, 300 + ABOVE_PX), {})
+    with Simulation(example("helloworld").with_suffix(".so"), tmp_path / "scene.yaml") as simulation:
+        for time_s in (0.5, 1.5):
+            simulation.run(time_s)
+            picture = simulation.render(300, 300)
+            frame = pixels(frames, time_s)[ABOVE_PX:]
+            assert np.ptp(picture) > 100
+            np.testing.assert_array_equal(frame, picture)
 
-    swarm = recording.until(6.0)
-    stills.canvas.restore_region(stills.still)
-    for artist in [*stills.axes.collections, *stills.axes.patches]:
-        artist.remove()
-    if look.tail_s:
-        layers.draw_trails(stills.axes, swarm, stills.floor, look.tail_s, 60)
-    if look.links:
-        layers.draw_links(stills.axes, links_at_end(swarm), stills.floor)
-    layers.draw_bodies(stills.axes, swarm, stills.floor)
-    layers.draw_border(stills.axes, swarm)
-    for artist in sorted([*stills.axes.collections, *stills.axes.patches], key=lambda one: one.get_zorder()):
-        artist.draw(stills.canvas.get_renderer())
-    picture = np.array(stills.canvas.buffer_rgba())[40:-45, :, :3].astype(int)
 
-    difference = np.abs(frame - picture).max(axis=-1)
-    assert difference.mean() < 0.5
-    assert (difference > 40).mean() < 0.002
+def test_trails_of_a_file_with_every_step_are_those_of_the_run(tmp_path: Path) -> None:
+    size = {"window_width": 300, "window_height": 300, "save_video_period": 8.0, "frames_name": "f{}.png"}
+    settings = {"view": {"trails": True}, "save_data_period": 0.01, "data_logger_led": True, "simulation_time": 8.0}
+    result = run(example("helloworld"), tmp_path, {**settings, **size, "show_lateral_LEDs": False})
+    assert result.code == 0, result.text
+    recording = read_recording(tmp_path / "data.feather")
+    frame, plain = (pixels(Frames(recording, (300, 300 + ABOVE_PX), {"trails": shown}), 8.0) for shown in (True, False))
+    assert (frame != plain).any(axis=-1).sum() > 100
+    (picture,) = tmp_path.glob("f*.png")
+    np.testing.assert_array_equal(frame[ABOVE_PX:], np.asarray(Image.open(picture).convert("RGB")))
 
 
-def place_of(stills: Stills, x_mm: float, y_mm: float) -> tuple[int, int]:
-    """Row and column of a place in the arena."""
-    x, y = stills.axes.transData.transform((x_mm, y_mm))
-    return int(stills.size[1] - y), int(x)
+def test_trail_fades_over_its_seconds_and_ends_there(tmp_path: Path) -> None:
+    recording = read_recording(write(tmp_path / "a.feather", walkers(1, 41)))  # 20 s, 2 m down
+    frames, without = frames_of(recording, 800, tail_s=4.0), frames_of(recording, 800)
+    trail, plain = pixels(frames, 8.0), pixels(without, 8.0)  # at y = 900 mm
+    shown = [int(trail[place_of(frames, 500, y)][0] - plain[place_of(frames, 500, y)][0]) for y in (840, 700, 600)]
+    assert shown[0] > shown[1] > shown[2] > 0
+    assert trail[place_of(frames, 500, 480)].tolist() == plain[place_of(frames, 500, 480)].tolist()
 
 
 def test_jump_leaves_no_trail(tmp_path: Path) -> None:
     rows = walkers(1, 2).assign(x=np.array([900.0, 100.0]), y=500.0)
-    stills = Stills(read_recording(write(tmp_path / "jump.feather", rows)), (400, 400), Look(tail_s=1.0))
-    assert pixels(stills, 0.5)[place_of(stills, 500, 500)].max() < 40  # the floor
+    frames = frames_of(read_recording(write(tmp_path / "jump.feather", rows)), tail_s=1.0)
+    assert pixels(frames, 0.5)[place_of(frames, 500, 500)].max() < 40  # the floor
+
+
+def test_trail_across_a_periodic_border_is_there_on_both_sides(tmp_path: Path) -> None:
+    rows = walkers(1, 2).assign(x=np.array([900.0, 100.0]), y=500.0)
+    path = write(tmp_path / "a.feather", rows, boundary_condition="periodic")
+    recording = read_recording(path)
+    frames, without = frames_of(recording, 800, tail_s=5.0), frames_of(recording, 800)
+    changed = (pixels(frames, 0.5) != pixels(without, 0.5)).any(axis=-1)
+    for x_mm in (920, 990, 10, 60):
+        row, column = place_of(frames, x_mm, 500)
+        assert changed[row - 1 : row + 2, column].any()
+    row, column = place_of(frames, 500, 500)
+    assert not changed[row - 3 : row + 4, column].any()
+
+
+def test_links_join_robots_near_enough_and_say_which_is_deaf(tmp_path: Path) -> None:
+    rows = walkers(3, 2).assign(x=lambda frame: 400.0 + 120.0 * frame["robot_id"], y=500.0)
+    rows["robot_category"] = np.where(rows["robot_id"] == 2, "silent", "robots")
+    mute = {"silent": {"type": "pogobot", "geometry": "disk", "radius": 26.5, "communication_radius": 0}}
+    recording = read_recording(write(tmp_path / "a.feather", rows, mute))
+    frames = frames_of(recording, 800, links="below")
+    pairs = frames.moments.at(0.0).heard
+    assert pairs is not None
+    assert pairs.tolist() == [(0, 1, 1), (1, 2, 0)]
+    image, plain = pixels(frames, 0.0), pixels(frames_of(recording, 800), 0.0)
+    for x_mm in (455, 460, 465, 580):
+        place = place_of(frames, x_mm, 500)
+        assert image[place].min() > plain[place].min() + 40
 
 
 def test_glow_ends_at_the_wall(tmp_path: Path) -> None:
     rows = walkers(1, 2).assign(x=20.0, y=500.0)
-    stills = Stills(read_recording(write(tmp_path / "wall.feather", rows)), (720, 800), Look())
-    image = pixels(stills, 0.0)
-    assert image[place_of(stills, -13.0, 500)].tolist() == [255, 255, 255]
-    assert image[place_of(stills, 52.0, 500)][0] > 30
+    frames = frames_of(read_recording(write(tmp_path / "wall.feather", rows)), 800)
+    image = pixels(frames, 0.0)
+    assert image[place_of(frames, -13.0, 500)].tolist() == [255, 255, 255]
+    assert image[place_of(frames, 52.0, 500)][0] > 30
+
+
+def test_colours_of_a_column_do_not_glow(tmp_path: Path) -> None:
+    recording = read_recording(write(tmp_path / "a.feather", walkers()), color_by="state")
+    frames = Frames(recording, (900, 800 + ABOVE_PX), {})
+    image = pixels(frames, 0.0)
+    expected = np.round(255 * recording.last.rows[RGB].to_numpy()[:3])
+    scale = FILLED * min(frames.picture_size) / SIDE_MM
+    width, height = frames.picture_size
+    for x_mm, colour in zip((1000 / 6, 500, 2500 / 3), expected, strict=True):
+        column = int(width / 2 + scale * (x_mm - 500))
+        row = int(ABOVE_PX + height / 2 + scale * (90 - 500))
+        assert image[row, column].tolist() == colour.tolist()
+        assert image[int(row - scale * 22), column].max() < 40  # the floor behind the robot
 
 
 def test_robot_at_a_periodic_border_comes_back_on_the_other_side(tmp_path: Path) -> None:
     rows = walkers(1, 2).assign(x=995.0, y=500.0)
-    recording = read_recording(write(tmp_path / "border.feather", rows, boundary_condition="periodic"))
-    stills = Stills(recording, (720, 800), Look())
-    image = pixels(stills, 0.0)
+    frames = frames_of(read_recording(write(tmp_path / "border.feather", rows, boundary_condition="periodic")), 800)
+    image = pixels(frames, 0.0)
     for x_mm in (980.0, 12.0):
-        assert np.ptp(image[place_of(stills, x_mm, 500)]) > 100  # red
-    assert image[place_of(stills, 1014.0, 500)].tolist() == [255, 255, 255]
+        assert np.ptp(image[place_of(frames, x_mm, 490)]) > 100  # red
+    assert image[place_of(frames, 1014.0, 500)].tolist() == [255, 255, 255]
+
+
+def test_robot_is_not_there_before_its_first_row(tmp_path: Path) -> None:
+    rows = walkers(2, 3)
+    rows = rows[(rows["robot_id"] == 0) | (rows["time"] > 0.6)]
+    frames = frames_of(read_recording(write(tmp_path / "a.feather", rows, boundary_condition="periodic")), 800)
+    assert pixels(frames, 0.5)[place_of(frames, 750, 140)].max() < 40
+    assert pixels(frames, 1.0)[place_of(frames, 750, 190)].tolist() == [0, 210, 0]
 
 
 def test_headings_stand_out_from_bright_and_dark_colours(data: Path) -> None:
-    stills = Stills(read_recording(data), (720, 800), Look())
-    image = pixels(stills, 0.0)
-    assert image[place_of(stills, 500, 116)].max() < 60  # green
-    assert image[place_of(stills, 2500 / 3, 116)].min() > 200  # blue
+    frames = frames_of(read_recording(data), 720)
+    image = pixels(frames, 0.0)
+    assert image[place_of(frames, 500, 116)].max() < 60  # green
+    assert image[place_of(frames, 2500 / 3, 116)].min() > 200  # blue
 
 
-@pytest.mark.parametrize("options", [Look(), Look(3.0, True)])
-def test_frames_are_the_same_each_time_and_whatever_came_before(tmp_path: Path, options: Look) -> None:
-    recording = mixed(tmp_path)
-    first, other = (Stills(recording, (320, 320), options) for _ in range(2))
+@pytest.mark.parametrize("tail_s", [None, 3.0])
+def test_frames_are_the_same_each_time_and_whatever_came_before(tmp_path: Path, tail_s: float | None) -> None:
+    recording = read_recording(write(tmp_path / "a.feather", walkers(8, 21)))
+    first, other = (frames_of(recording, 320, tail_s, links="above") for _ in range(2))
     for time_s in (0.0, 7.3, 2.0):
-        other.frame(time_s)
-    assert other.frame(4.13) == first.frame(4.13)
+        pixels(other, time_s)
+    np.testing.assert_array_equal(pixels(other, 4.13), pixels(first, 4.13))
 
 
-def test_slow_robot_moves_by_parts_of_a_pixel(tmp_path: Path) -> None:
-    stills = Stills(read_recording(write(tmp_path / "slow.feather", walkers())), (400, 400), Look())
+def test_slow_robot_moves_by_parts_of_a_pixel(data: Path) -> None:
+    frames = frames_of(read_recording(data))
     heights = []
     for time_s in np.arange(0.0, 0.1, 0.01):
-        image = pixels(stills, time_s)
+        image = pixels(frames, time_s)
         red = np.clip(image[..., 0] - image[..., 1:].max(axis=-1), 0, None).astype(float)
-        heights.append(float(red.sum(axis=1) @ np.arange(400) / red.sum()))
-    scale = stills.axes.transData.get_matrix()[0, 0]  # pixels per mm
-    assert np.array(heights) - heights[0] == pytest.approx(np.arange(10) * scale, abs=0.13)  # an eighth of a pixel
+        heights.append(float(red.sum(axis=1) @ np.arange(len(red)) / red.sum()))
+    assert np.array(heights) - heights[0] == pytest.approx(np.arange(10) * scale_of(frames), abs=0.13)
 
 
-def test_many_sizes_of_disks_do_not_fill_the_memory(tmp_path: Path) -> None:
-    stills = Stills(mixed(tmp_path), (320, 320), Look())
-    stills.frame(0.0)
-    brush = stills.brush
-    for radius in range(100, 1500, 50):
-        brush.stamp(DISK, float(radius), 0, 0)
-        assert sum(own.width * own.height for own in brush.stamps.values()) < 80e6
+def test_arrays_of_another_size_are_refused(data: Path) -> None:
+    moments = frames_of(read_recording(data)).moments
+    moment = moments.at(0.0)
+    picture = np.empty((100, 100, 3), np.uint8)
+    wrong = {
+        "poses: expected an array of float32 of shape (3, 3)": replace(moment, poses=moment.poses[:2]),
+        "rgb: expected an array of uint32 of shape (3,)": replace(moment, rgb=moment.rgb.astype(np.int32)),
+        "lamps: expected an array of float32 of shape (0, 2)": replace(moment, lamps=np.zeros((1, 2), np.float32)),
+    }
+    for said, other in wrong.items():
+        with pytest.raises(ValueError, match=re.escape(said)):
+            moments.painter.draw(other, picture)
+    with pytest.raises(ValueError, match="picture: expected bytes of shape"):
+        moments.painter.draw(moment, picture[:, ::2])
+    with pytest.raises(PictureError, match=r"has 1 to 16384 pixels in a row, .*; found 0 x 100"):
+        moments.painter.draw(moment, picture[:, :0])
+
+
+def test_stage_that_says_nonsense_is_refused() -> None:
+    square = [np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])]
+    kinds = [{"is": "robot", "geometry": "disk"}]
+    description: dict[str, Any] = {"light_map": {"columns": 1, "rows": 1}, "kinds": kinds, "lamps": []}
+    one, none = np.zeros(1, np.uint32), np.zeros(1, np.uint32)
+    wrong: list[tuple[str, Stage]] = [
+        ("object 0 is of kind 7, and there are 1 kinds", Stage(description, square, one + 7, none)),
+        ("object 0 has 4 parts, but is no membrane", Stage(description, square, one, none + 4)),
+        ("a polygon has at least 3 corners, found 2", Stage(description, [square[0][:2]], one, none)),
+        ("view.links: expected", Stage({**description, "view": {"view": {"links": "sideways"}}}, square, one, none)),
+    ]
+    for said, stage in wrong:
+        with pytest.raises(PictureError, match=re.escape(said)):
+            Painter(stage)
+
+
+def test_film_shows_what_the_configuration_says_and_the_command_line_prevails(tmp_path: Path) -> None:
+    def parts(options: dict[str, Any], **settings: Any) -> list[bool]:
+        recording = read_recording(write(tmp_path / "a.feather", walkers(), None, **settings))
+        painter = Moments(recording, options).painter
+        return [painter.shows(part) for part in ("trails", "links", "light_levels")]
+
+    assert parts({}) == [False, False, False]
+    assert parts({}, view={"trails": True, "links": "above"}) == [True, True, False]
+    assert parts({}, show_trajectory_traces=True, show_light_levels=True) == [True, False, True]
+    assert parts({}, show_communication_channels=True, view={"links": "hidden"}) == [False, False, False]
+    assert parts({"links": "hidden", "light_levels": True}, view={"trails": True, "links": "above"}) == [
+        True, False, True,
+    ]  # fmt: skip
+    assert parts({}, show_light_levels={"default_option": True, "batch_options": [True, False]})[2] is False
+
+
+def test_older_files_with_a_value_that_is_wrong_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert film(write(tmp_path / "a.feather", walkers(), None, view={"links": "up"}), "a.mp4") == 2
+    assert refusal(capsys).endswith("a.feather: view.links: expected one of hidden, below, above, found 'up'")
+
+
+def test_error_while_drawing_ends_the_film_in_its_turn() -> None:
+    def three() -> Iterator[int]:
+        yield from (1, 2, 3)
+        raise PictureError("no more")
+
+    taken = []
+    with pytest.raises(PictureError, match="no more"):
+        for item in made_ahead(three(), 1):
+            taken.append(item)
+    assert taken == [1, 2, 3]
+
+
+def test_nothing_more_is_made_once_nothing_is_wanted() -> None:
+    made = []
+
+    def endless() -> Iterator[int]:
+        for i in itertools.count():
+            made.append(i)
+            yield i
+
+    ahead = made_ahead(endless(), 2)
+    assert [next(ahead) for _ in range(3)] == [0, 1, 2]
+    ahead.close()
+    count = len(made)
+    assert count <= 3 + 2 + 2
+    time.sleep(0.3)
+    assert len(made) == count
 
 
 def test_names_that_look_like_marks_of_the_page_are_names(tmp_path: Path) -> None:

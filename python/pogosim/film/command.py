@@ -10,6 +10,9 @@ import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
+
+import yaml
 
 from pogosim.command.parser import Parser, finite, positive
 from pogosim.film.encoder import FORMATS, PAGE, check_ffmpeg
@@ -25,6 +28,17 @@ def size(text: str) -> tuple[int, int]:
     return int(found[1]), int(found[2] or found[1])
 
 
+def view_option(text: str) -> tuple[str, Any]:
+    """Return a key of the section `view` and its value from the command line: trails=true."""
+    key, equals, value = text.partition("=")
+    if not key or not equals:
+        raise argparse.ArgumentTypeError(f"{text} is no key and value, such as trails=true")
+    try:
+        return key, yaml.safe_load(value)
+    except yaml.YAMLError:
+        raise argparse.ArgumentTypeError(f"{value} is no value of {key} in YAML") from None
+
+
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> int:
     """Run the command line; returns the exit code: 0, or 2 if the film could not be made."""
     parser = Parser(prog=prog, description=(__doc__ or "").splitlines()[0])
@@ -36,8 +50,16 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> 
     parser.add_argument("--fps", type=positive, default=30.0, help="frames per second of the film (%(default)g)")
     parser.add_argument("--from", dest="start", type=finite, metavar="SECONDS", help="time of the first frame (first)")
     parser.add_argument("--to", dest="end", type=finite, metavar="SECONDS", help="time of the last frame (last)")
-    parser.add_argument("--tail", type=positive, metavar="SECONDS", help="length of the trails (none)")
+    parser.add_argument("--tail", type=positive, metavar="SECONDS", help="show trails of this length")
     parser.add_argument("--size", type=size, metavar="WxH", help="pixels of a frame (the arena has 720)")
+    parser.add_argument(
+        "--view",
+        type=view_option,
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="what films show, as in the section `view` of a configuration (as that of the run)",
+    )
     add_what_to_draw(parser)
     options = parser.parse_args(arguments)
 

@@ -43,11 +43,11 @@ def check_ffmpeg(suffix: str) -> None:
         raise PictureError(f"this ffmpeg has no encoder {ENCODERS[suffix]}, which {suffix} films need: {install}")
 
 
-def encode(frames: Iterable[bytes], size: tuple[int, int], fps: float, film: Path) -> None:
+def encode(frames: Iterable[memoryview], size: tuple[int, int], fps: float, film: Path) -> None:
     """Write a film. What is there stays until the new one is complete.
 
     Args:
-        frames: Each of width * height * 4 bytes, RGBA.
+        frames: Bytes of each: red, green and blue, pixel by pixel, row by row from the top.
         size: Width and height in pixels; even, unless for .gif.
         fps: Frames per second.
         film: .mp4, .webm or .gif; absolute, and no symbolic link.
@@ -58,7 +58,7 @@ def encode(frames: Iterable[bytes], size: tuple[int, int], fps: float, film: Pat
     """
     suffix = film.suffix.lower()
     with partial_output(film) as partial, tempfile.TemporaryFile() as said:
-        video = ["-f", "rawvideo", "-pixel_format", "rgba", "-video_size", f"{size[0]}x{size[1]}"]
+        video = ["-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", f"{size[0]}x{size[1]}"]
         command = ["ffmpeg", "-hide_banner", "-loglevel", "error", "-y", *video, "-framerate", f"{fps:.6g}", "-i", "-"]
         command += [*FORMATS[suffix], f"file:{partial}"]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said) as process:
@@ -79,7 +79,7 @@ def encode(frames: Iterable[bytes], size: tuple[int, int], fps: float, film: Pat
             raise PictureError(f"the film {film} could not be written: ffmpeg: {lines[-1]}")
 
 
-def taken(frames: Iterable[bytes], process: subprocess.Popen[bytes]) -> Iterator[bytes]:
+def taken(frames: Iterable[memoryview], process: subprocess.Popen[bytes]) -> Iterator[memoryview]:
     """Yield frames as long as they are taken."""
     for frame in frames:
         if process.poll() is not None:

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from pogosim.command.parser import warn
 from pogosim.errors import PictureError
+from pogosim.film.ahead import made_ahead
 from pogosim.film.encoder import PAGE, encode
+from pogosim.film.frames import Frames, size_for
 from pogosim.film.replay import write_replay
-from pogosim.film.stills import Look, Stills, size_for
 from pogosim.fonts import without_tex
 from pogosim.lines import counted, say
 from pogosim.picture.loading import load, sayings
 from pogosim.picture.swarm import Recording
 
 MAX_FRAMES = 1_000_000
+AHEAD = 4  # frames that are drawn before ffmpeg takes them
 
 # Players take delays below 20 ms for 100 ms, and delays are multiples of 10 ms.
 GIF_FPS = 50.0
@@ -82,16 +88,29 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
         say(f"{options.output}: {told}")
 
 
+def shown(options: argparse.Namespace) -> dict[str, Any]:
+    """Return what the command line says of what pictures show, as keys of the section `view`."""
+    keys: dict[str, Any] = {"links": "below"} if options.links else {}
+    if options.tail is not None:
+        keys["trails"] = True
+    return {**keys, **dict(options.view)}
+
+
 def encode_film(
     recording: Recording, path: Path, suffix: str, times_s: Sequence[float], options: argparse.Namespace
 ) -> str:
     """Make a film for players; returns what is said of it."""
-    pixels = size_for(recording, options.size, is_even=suffix != ".gif")
-    stills = Stills(recording, pixels, Look(options.tail, options.links))
+    width, height = size_for(recording, options.size)
+    if suffix != ".gif":
+        width, height = width + width % 2, height + height % 2
+    frames = Frames(recording, (width, height), shown(options), options.tail)
 
-    def frames() -> Iterator[bytes]:
+    def drawn() -> Iterator[memoryview]:
         for time_s in times_s:
-            yield stills.frame(time_s)
+            frame = np.empty((height, width, 3), np.uint8)
+            frames.draw(time_s, frame)
+            yield frame.data.cast("B")
 
-    encode(frames(), pixels, options.fps, path)
-    return f"{counted(len(times_s), 'frame')} of {pixels[0]} x {pixels[1]} pixels, {len(times_s) / options.fps:.2f} s"
+    with contextlib.closing(made_ahead(drawn(), AHEAD)) as ready:
+        encode(ready, (width, height), options.fps, path)
+    return f"{counted(len(times_s), 'frame')} of {width} x {height} pixels, {len(times_s) / options.fps:.2f} s"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -84,6 +84,7 @@ class Recording:
     last: Swarm  # at its end; with the dots of membranes at all times
     walls: pd.DataFrame  # rows of pogowalls at all times
     left_out: str = ""  # what the file holds besides this run; empty: nothing
+    configuration: dict[str, Any] = field(default_factory=dict)  # of the run; empty: the file does not say
 
     @property
     def times_s(self) -> npt.NDArray[np.float64]:
@@ -200,7 +201,7 @@ def read_recording(
         links=None if several else read_body_links(metadata, object_numbers(objects)),
         colouring=colouring,
     )
-    return Recording(last, rows[is_wall], left_out)
+    return Recording(last, rows[is_wall], left_out, configuration)
 
 
 def object_numbers(rows: pd.DataFrame) -> dict[tuple[str, int], int]:
