@@ -54,7 +54,7 @@ def drawing_ms(data: Path, view: dict[str, str], tail_s: float | None) -> float:
     from pogosim.picture.swarm import read_recording
 
     recording = read_recording(data)
-    size = size_for(recording, None)
+    size = size_for(recording)
     frames = Frames(recording, size, {**view, "trails": tail_s is not None}, tail_s)
     frame = np.empty((size[1], size[0], 3), np.uint8)
     times_s = np.linspace(*recording.times_s[[0, -1]], FRAMES)

@@ -47,8 +47,8 @@ std::span<Key<DrawnKind> const> kind_keys() {
                                     {"membrane", Role::membrane},
                                     {"robot_membrane", Role::robot_membrane}}),
           any(), "", "What it is."},
-        K{"segments", &DrawnKind::segments, any(), "", "A membrane that is a band."},
-        K{"half_thickness", &DrawnKind::half_thickness_mm, kLengthOrZero, "mm", "Of a membrane."},
+        K{"segments", &DrawnKind::segments, any(), "", "Whether a membrane is a band."},
+        K{"half_thickness", &DrawnKind::half_thickness_mm, kLengthOrZero, "mm", "Half of the thickness of a membrane."},
         K{"x", &DrawnKind::x_mm, kCoordinate, "mm", "Place of a wall."},
         K{"y", &DrawnKind::y_mm, kCoordinate, "mm", "Place of a wall."},
     };

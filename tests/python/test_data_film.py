@@ -21,8 +21,10 @@ from PIL import Image
 from pogosim import Simulation
 from pogosim.errors import PictureError
 from pogosim.film.ahead import made_ahead
+from pogosim.film.cards import card
 from pogosim.film.command import main
 from pogosim.film.frames import ABOVE_PX, FILLED, Frames
+from pogosim.film.grid import Grid, labels_of
 from pogosim.film.making import frame_times
 from pogosim.film.moments import Moments
 from pogosim.film.painter import Painter, Stage
@@ -532,6 +534,115 @@ def test_film_shows_what_the_configuration_says_and_the_command_line_prevails(tm
 def test_older_files_with_a_value_that_is_wrong_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert film(write(tmp_path / "a.feather", walkers(), None, view={"links": "up"}), "a.mp4") == 2
     assert refusal(capsys).endswith("a.feather: view.links: expected one of hidden, below, above, found 'up'")
+
+
+# ---- several runs, and cards -----------------------------------------------------------------------------------------
+
+
+def test_runs_stand_side_by_side_at_one_time_and_the_shorter_one_is_over(tmp_path: Path) -> None:
+    short = read_recording(write(tmp_path / "short.feather", walkers(1, 3)))  # 1 s
+    long = read_recording(write(tmp_path / "long.feather", walkers(1, 9)))  # 4 s
+    grid = Grid([short, long], (800, 400 + ABOVE_PX), {"scale_bar": False}, labels=["a", "b"])
+    assert (grid.columns, grid.rows, grid.cell) == (2, 1, (400, 400 + ABOVE_PX))
+    for time_s in (0.5, 3.0):
+        frame = grid.frame(time_s)
+        for i, own in enumerate(grid.runs):
+            alone = np.empty((400 + ABOVE_PX, 400, 3), np.uint8)
+            own.draw(time_s, alone)
+            np.testing.assert_array_equal(frame[:, 400 * i : 400 * (i + 1)], alone)
+    at_end, later, last = (grid.frame(time_s).astype(int) for time_s in (1.0, 3.0, 4.0))
+    np.testing.assert_array_equal(at_end[ABOVE_PX:, :400], later[ABOVE_PX:, :400])  # it stands still
+    assert (at_end[:ABOVE_PX, 200:400] > 200).all()
+    assert (later[:ABOVE_PX, 200:400] < 128).any()  # over
+    assert (later[:ABOVE_PX, 600:] > 200).all()
+    clock = np.s_[ABOVE_PX : ABOVE_PX + 30, 700:]
+    assert (later[clock] < 128).any()
+    assert (later[clock] != last[clock]).any()
+    assert not (later[ABOVE_PX : ABOVE_PX + 8, 300:400] < 128).any()  # there is one clock
+
+
+@pytest.mark.parametrize(("count", "columns", "rows"), [(1, 1, 1), (2, 2, 1), (3, 3, 1), (4, 2, 2), (5, 3, 2)])
+def test_runs_are_arranged_in_rows(data: Path, count: int, columns: int, rows: int) -> None:
+    grid = Grid([read_recording(data)] * count, None, {}, is_even=True)
+    assert (grid.columns, grid.rows) == (columns, rows)
+    assert all(side % 2 == 0 for side in grid.size)
+    frame = grid.frame(0.0)
+    assert frame.shape == (grid.size[1], grid.size[0], 3)
+    is_red = (frame[..., 0] > 180) & (frame[..., 1:] < 50).all(axis=-1)
+    found = [
+        is_red[grid.cell[1] * (i // columns) :, grid.cell[0] * (i % columns) :][: grid.cell[1], : grid.cell[0]].any()
+        for i in range(columns * rows)
+    ]
+    assert found == [i < count for i in range(columns * rows)]
+
+
+def test_runs_are_labelled_by_what_differs(tmp_path: Path) -> None:
+    def labels(*settings: dict[str, Any], names: tuple[str, str] = ("a.feather", "b.feather")) -> list[str]:
+        paths = []
+        for own, name in zip(settings, names, strict=True):
+            (tmp_path / name).parent.mkdir(exist_ok=True)
+            paths.append(write(tmp_path / name, walkers(), None, **own))
+        return labels_of(list(names), [read_recording(path) for path in paths])
+
+    named = {"data_filename": "x"}
+    assert labels({"parameters": {"p": 0.1}, **named}, {"parameters": {"p": 0.5}}) == ["p = 0.1", "p = 0.5"]
+    assert labels({"seed": 1, "time_step": 0.1}, {"seed": 2, "time_step": 0.2}) == [
+        "seed = 1, time_step = 0.1",
+        "seed = 2, time_step = 0.2",
+    ]
+    assert labels({}, named) == ["a.feather", "b.feather"]
+    assert labels({}, named, names=("u/run.feather", "v/run.feather")) == ["u/run.feather", "v/run.feather"]
+
+
+def test_film_of_several_runs_with_cards(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = write(data.parent / "other.feather", walkers(2, 7))  # 3 s
+    output = data.parent / "both.mp4"
+    cards = ["--title", "Schwärme $x_1$", "--subtitle", "中 ∑", "--credits", "one\nand two"]
+    runs = ["--labels", "p = 0.1", "p = 0.5", "--fps", "10", "--size", "400x240"]
+    assert main([str(data), str(other), "-o", str(output), *runs, *cards]) == 0
+    assert capsys.readouterr().out == f"{output}: 71 frames of 400 x 240 pixels, 7.10 s\n"  # 2 s, 3.1 s and 2 s
+    assert probe(output) == {"codec_name": "h264", "width": 400, "height": 240, "nb_read_frames": "71"}
+
+
+def test_card_has_its_words_within_it() -> None:
+    words = "many words " * 20
+    blank = card((400, 240))
+    assert np.ptp(blank.reshape(-1, 3), axis=0).max() == 0
+    for shown in (card((400, 240), "A title"), card((400, 240), "A title", "and more"), card((400, 240), "", words)):
+        assert (shown < 128).any()
+        for edge in (shown[:2], shown[-2:], shown[:, :2], shown[:, -2:]):
+            assert (edge == blank[0, 0]).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "said"),
+    [
+        ("a.mp4", ["--labels", "x", "y", "z"], "3 labels for 2 data files; give one for each (--labels)"),
+        ("a.mp4", ["--labels", "x"], "1 label for 2 data files; give one for each (--labels)"),
+        ("a.html", [], "a page shows one run, not 2"),
+        ("a.mp4", ["--from", "9"], "it has rows from 0 s to 2 s; --from and --to leave nothing of that"),
+        ("a.mp4", ["--size", "9000"], "frames of 9000 x 9000 pixels; 160 to 8192 are possible (--size)"),
+    ],
+)
+def test_several_runs_that_cannot_be_filmed_are_one_line(
+    data: Path, name: str, options: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([str(data), str(data), "-o", str(data.parent / name), *options]) == 2
+    assert said in refusal(capsys)
+    assert [path.name for path in data.parent.iterdir()] == ["data.feather"]
+
+
+def test_second_file_that_does_not_exist_is_named(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(data), "none.feather", "-o", str(data.parent / "a.mp4")]) == 2
+    assert refusal(capsys) == "pogosim film: cannot read 'none.feather': no such file"
+
+
+def test_pages_have_no_cards(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert film(data, "a.html", "--title", "a") == 2
+    assert "--title is for films (.mp4, .webm, .gif)" in refusal(capsys)
+
+
+# ---- drawing ahead ---------------------------------------------------------------------------------------------------
 
 
 def test_error_while_drawing_ends_the_film_in_its_turn() -> None:

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 
-PATIENCE_S = 0.1  # after which the maker looks whether anybody still wants something
+PATIENCE_S = 0.1  # after which the thread looks whether something is still wanted
 
 
 def made_ahead(items: Iterable[Item], most: int) -> Generator[Item, None, None]:

@@ -18,6 +18,7 @@ from pogosim.picture import layers
 from pogosim.picture.figure import draw_key, notes, title, width_of_key
 from pogosim.picture.palette import INK, PAPER
 from pogosim.picture.swarm import Recording
+from pogosim.times import slack_s
 
 DPI = 100.0
 ABOVE_PX, BELOW_PX, MARGIN_PX = 36, 26, 15  # heading, notes
@@ -28,20 +29,12 @@ MIN_SIDE = 160
 LEAST_PICTURE = 16
 
 
-def size_for(recording: Recording, asked: tuple[int, int] | None, arena_px: float = ARENA_PX) -> tuple[int, int]:
-    """Width and height of frames in pixels: as asked, or such that the arena's longer side has `arena_px`.
-
-    Raises:
-        PictureError: They are too small or too large.
-    """
-    swarm = recording.last
-    extent = layers.extent_of(swarm)
+def size_for(recording: Recording, arena_px: float = ARENA_PX) -> tuple[int, int]:
+    """Width and height of frames in pixels, such that the arena's longer side has `arena_px`."""
+    extent = layers.extent_of(recording.last)
     picture = np.round(arena_px / FILLED * extent / extent.max()).astype(int)
     key_px, below_px = beside(recording)
-    size = asked or (max(int(picture[0]) + key_px, MIN_SIDE), max(int(picture[1]) + ABOVE_PX + below_px, MIN_SIDE))
-    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
-        raise PictureError(f"frames of {size[0]} x {size[1]} pixels; {MIN_SIDE} to {MAX_SIDE} are possible (--size)")
-    return size
+    return max(int(picture[0]) + key_px, MIN_SIDE), max(int(picture[1]) + ABOVE_PX + below_px, MIN_SIDE)
 
 
 def beside(recording: Recording) -> tuple[int, int]:
@@ -109,9 +102,10 @@ class Frames:
             time_s: The time; after the end of the run, the heading says that it is over.
             frame: Red, green and blue, shape (height, width, 3), to be filled; may be a part of a larger one.
         """
-        frame[:] = self.still(time_s > self.end_s)
+        frame[:] = self.still(time_s > self.end_s + slack_s(time_s))
         width, height = self.picture_size
-        self.moments.painter.draw(self.moments.at(time_s), frame[ABOVE_PX : ABOVE_PX + height, :width])
+        moment = self.moments.at(min(time_s, self.end_s), time_s)
+        self.moments.painter.draw(moment, frame[ABOVE_PX : ABOVE_PX + height, :width])
 
     def draw_still(self, is_over: bool) -> Picture:
         """Draw all but the picture. Shape (height, width, 3)."""

@@ -6,16 +6,16 @@ import argparse
 import contextlib
 import math
 from collections.abc import Iterator, Sequence
+from itertools import repeat
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from pogosim.command.parser import warn
 from pogosim.errors import PictureError
 from pogosim.film.ahead import made_ahead
+from pogosim.film.cards import CARD_S, card
 from pogosim.film.encoder import PAGE, encode
-from pogosim.film.frames import Frames, size_for
+from pogosim.film.grid import Grid, labels_of
 from pogosim.film.replay import write_replay
 from pogosim.fonts import without_tex
 from pogosim.lines import counted, say
@@ -29,20 +29,19 @@ AHEAD = 4  # frames that are drawn before ffmpeg takes them
 GIF_FPS = 50.0
 
 
-def span(recording: Recording, options: argparse.Namespace) -> tuple[float, float]:
-    """Return the first and last time of the film, s.
+def span(recordings: Sequence[Recording], options: argparse.Namespace) -> tuple[float, float]:
+    """Return the first and last time of the film, s: of all runs together.
 
     Raises:
-        PictureError: The run has no such times.
+        PictureError: The runs have no such times.
     """
-    times_s = recording.times_s
-    start_s = times_s[0] if options.start is None else max(options.start, times_s[0])
-    end_s = times_s[-1] if options.end is None else min(options.end, times_s[-1])
+    first_s = min(float(recording.times_s[0]) for recording in recordings)
+    last_s = max(float(recording.times_s[-1]) for recording in recordings)
+    start_s = first_s if options.start is None else max(options.start, first_s)
+    end_s = last_s if options.end is None else min(options.end, last_s)
     if start_s > end_s:
-        raise PictureError(
-            f"it has rows from {times_s[0]:.9g} s to {times_s[-1]:.9g} s; --from and --to leave nothing of that"
-        )
-    return float(start_s), float(end_s)
+        raise PictureError(f"it has rows from {first_s:.9g} s to {last_s:.9g} s; --from and --to leave nothing of that")
+    return start_s, end_s
 
 
 def frame_times(start_s: float, end_s: float, speed: float, fps: float) -> list[float]:
@@ -73,17 +72,18 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
     if suffix == ".gif" and options.fps > GIF_FPS:
         warn(prog, f"a GIF has {GIF_FPS:g} frames per second, not {options.fps:g}: players show more of them slowly")
         options = argparse.Namespace(**{**vars(options), "fps": GIF_FPS})
-    with sayings(options.data):
-        recording = load(options, prog)
-        start_s, end_s = span(recording, options)
+    recordings = []
+    for data in options.data:
+        with sayings(data):
+            recordings.append(load(argparse.Namespace(**{**vars(options), "data": data}), prog))
+    with sayings(", ".join(options.data)):
+        times_s = span(recordings, options)
         if suffix == PAGE:
-            told, warnings = write_replay(recording, path, (start_s, end_s), options)
+            told, warnings = write_replay(recordings[0], path, times_s, options.data[0], options)
             for warning in warnings:
                 warn(prog, warning)
         else:
-            told = encode_film(
-                recording, path, suffix, frame_times(start_s, end_s, options.speed, options.fps), options
-            )
+            told = encode_film(recordings, path, frame_times(*times_s, options.speed, options.fps), options)
     if not options.quiet:
         say(f"{options.output}: {told}")
 
@@ -97,20 +97,25 @@ def shown(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def encode_film(
-    recording: Recording, path: Path, suffix: str, times_s: Sequence[float], options: argparse.Namespace
+    recordings: Sequence[Recording], path: Path, times_s: Sequence[float], options: argparse.Namespace
 ) -> str:
     """Make a film for players; returns what is said of it."""
-    width, height = size_for(recording, options.size)
-    if suffix != ".gif":
-        width, height = width + width % 2, height + height % 2
-    frames = Frames(recording, (width, height), shown(options), options.tail)
+    labels = options.labels or (labels_of(options.data, recordings) if len(recordings) > 1 else None)
+    is_even = path.suffix.lower() != ".gif"
+    grid = Grid(recordings, options.size, shown(options), options.tail, labels, is_even)
+    of_card = max(round(CARD_S * options.fps), 1)
+    before = of_card if options.title or options.subtitle else 0
+    behind = of_card if options.credits else 0
 
     def drawn() -> Iterator[memoryview]:
+        if before:
+            yield from repeat(card(grid.size, options.title, options.subtitle).data.cast("B"), before)
         for time_s in times_s:
-            frame = np.empty((height, width, 3), np.uint8)
-            frames.draw(time_s, frame)
-            yield frame.data.cast("B")
+            yield grid.frame(time_s).data.cast("B")
+        if behind:
+            yield from repeat(card(grid.size, text=options.credits).data.cast("B"), behind)
 
     with contextlib.closing(made_ahead(drawn(), AHEAD)) as ready:
-        encode(ready, (width, height), options.fps, path)
-    return f"{counted(len(times_s), 'frame')} of {width} x {height} pixels, {len(times_s) / options.fps:.2f} s"
+        encode(ready, grid.size, options.fps, path)
+    count, (width, height) = before + len(times_s) + behind, grid.size
+    return f"{counted(count, 'frame')} of {width} x {height} pixels, {count / options.fps:.2f} s"

@@ -39,7 +39,7 @@ WITHOUT = "This is the first picture. To replay the run, allow JavaScript for th
 
 
 def write_replay(
-    recording: Recording, path: Path, span_s: tuple[float, float], options: argparse.Namespace
+    recording: Recording, path: Path, span_s: tuple[float, float], data: str, options: argparse.Namespace
 ) -> tuple[str, list[str]]:
     """Write the page of a run.
 
@@ -47,6 +47,7 @@ def write_replay(
         recording: The run.
         path: As real_output() returns it.
         span_s: First and last time, s.
+        data: The file of the run, for the title.
         options: Options of the command: color_by, links, speed, tail.
 
     Returns:
@@ -56,7 +57,7 @@ def write_replay(
         PictureError: The run is too large.
         OSError: The page cannot be written.
     """
-    text, head, warnings = replay_page(recording, span_s, options, Path(options.data).name)
+    text, head, warnings = replay_page(recording, span_s, options, Path(data).name)
     page = text.encode("utf-8")
     with partial_output(path) as partial:
         partial.write_bytes(page)
