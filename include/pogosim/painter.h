@@ -34,6 +34,7 @@ struct pogosim_stage {
     uint32_t const* corner_counts;  ///< shape (polygons): corners of each outline, at least 3
     size_t polygon_count;           ///< at least 1
     uint32_t const* kinds;          ///< shape (objects): index into the list `kinds`
+    uint32_t const* ids;            ///< shape (objects): as in the data file, for labels and for a robot to follow
     uint32_t const* part_counts;    ///< shape (objects): parts of membranes, 0 of everything else
     size_t object_count;
 };

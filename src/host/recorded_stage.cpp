@@ -178,8 +178,7 @@ void add_body(Scenery& scenery, Shape const& shape) {
     scenery.body_radius_mm.push_back(bounding_radius(shape));
 }
 
-void add_object(Scenery& scenery, DrawnKind const& kind, std::uint32_t category, std::uint32_t parts) {
-    Object object{.id = static_cast<std::uint32_t>(scenery.objects.size()), .category = category};
+void add_object(Scenery& scenery, DrawnKind const& kind, Object object, std::uint32_t parts) {
     if (kind.role != Role::wall && (!kind.is_membrane() || parts > 0)) {
         object.body = static_cast<std::uint32_t>(scenery.body_shape.size());
         object.body_count = kind.is_membrane() ? parts : 1;
@@ -192,7 +191,7 @@ void add_object(Scenery& scenery, DrawnKind const& kind, std::uint32_t category,
         object.robot = static_cast<std::uint32_t>(scenery.robot_id.size());
         scenery.robot_id.push_back(object.id);
         scenery.robot_body.push_back(object.body);
-        scenery.robot_category.push_back(category);
+        scenery.robot_category.push_back(object.category);
     }
     if (kind.role == Role::wall) {
         Outline line{.robot = object.robot, .polygons = {}};
@@ -237,7 +236,7 @@ RecordedStage read_stage(pogosim_stage const& stage) {
         if (stage.part_counts[i] == 1) {
             throw ConfigError(fmt::format("part_counts: a membrane has at least 2 parts, or none; object {} has 1", i));
         }
-        add_object(scenery, kind, number, stage.part_counts[i]);
+        add_object(scenery, kind, {.id = stage.ids[i], .category = number}, stage.part_counts[i]);
         read.part_count += stage.part_counts[i];
     }
     read.scenery = std::make_shared<Scenery const>(std::move(scenery));

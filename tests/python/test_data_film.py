@@ -505,10 +505,13 @@ def test_stage_that_says_nonsense_is_refused() -> None:
     description: dict[str, Any] = {"light_map": {"columns": 1, "rows": 1}, "kinds": kinds, "lamps": []}
     one, none = np.zeros(1, np.uint32), np.zeros(1, np.uint32)
     wrong: list[tuple[str, Stage]] = [
-        ("object 0 is of kind 7, and there are 1 kinds", Stage(description, square, one + 7, none)),
-        ("object 0 has 4 parts, but is no membrane", Stage(description, square, one, none + 4)),
-        ("a polygon has at least 3 corners, found 2", Stage(description, [square[0][:2]], one, none)),
-        ("view.links: expected", Stage({**description, "view": {"view": {"links": "sideways"}}}, square, one, none)),
+        ("object 0 is of kind 7, and there are 1 kinds", Stage(description, square, one + 7, none, none)),
+        ("object 0 has 4 parts, but is no membrane", Stage(description, square, one, none, none + 4)),
+        ("a polygon has at least 3 corners, found 2", Stage(description, [square[0][:2]], one, none, none)),
+        (
+            "view.links: expected",
+            Stage({**description, "view": {"view": {"links": "sideways"}}}, square, one, none, none),
+        ),
     ]
     for said, stage in wrong:
         with pytest.raises(PictureError, match=re.escape(said)):

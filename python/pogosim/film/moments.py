@@ -112,7 +112,7 @@ class Moments:
 
         # Objects in the order in which runs create them, then walls.
         own = self.line.objects
-        ids = own["robot_id"].to_numpy()
+        ids = np.nan_to_num(own["robot_id"].to_numpy(dtype=float))
         kinds = own[KIND].to_numpy(dtype=np.int64)
         counts_up = np.array([kind.talks for kind in swarm.kinds])[kinds]
         order = np.lexsort((np.where(counts_up, ids, -ids), kinds))
@@ -142,6 +142,7 @@ class Moments:
                 },
                 swarm.polygons,
                 np.concatenate([self.kinds, walls]).astype(np.uint32),
+                np.concatenate([ids[order], np.zeros(len(walls))]).astype(np.uint32),
                 part_counts,
             )
         )

@@ -35,6 +35,7 @@ class StageData(ctypes.Structure):
         ("corner_counts", c_void_p),
         ("polygon_count", c_size_t),
         ("kinds", c_void_p),
+        ("ids", c_void_p),
         ("part_counts", c_void_p),
         ("object_count", c_size_t),
     )
@@ -68,6 +69,7 @@ class Stage:
     description: dict[str, Any]  # as the header says
     polygons: list[Floats]  # each of shape (corners, 2), the outer wall first
     kinds: Numbers  # shape (n,): index into the kinds of the description, of each object
+    ids: Numbers  # shape (n,): as in the data file
     part_counts: Numbers  # shape (n,): parts of membranes, 0 of everything else
 
 
@@ -138,6 +140,7 @@ class Painter:
             counts.ctypes.data,
             len(counts),
             fits("kinds", stage.kinds, np.uint32, (self.objects,)),
+            fits("ids", stage.ids, np.uint32, (self.objects,)),
             fits("part_counts", stage.part_counts, np.uint32, (self.objects,)),
             self.objects,
         )
