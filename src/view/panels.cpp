@@ -110,6 +110,7 @@ void draw_condition(PanelState& state, std::function<void(Command const&)> const
     constexpr std::size_t kLongest = 256;
     std::array<char, kLongest> typed{};
     state.condition.copy(typed.data(), kLongest - 1);
+    ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("pause when");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
