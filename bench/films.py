@@ -57,7 +57,7 @@ def drawing_ms(data: Path, view: dict[str, str], tail_s: float | None) -> float:
     size = size_for(recording)
     frames = Frames(recording, size, {**view, "trails": tail_s is not None}, tail_s)
     frame = np.empty((size[1], size[0], 3), np.uint8)
-    times_s = np.linspace(*recording.times_s[[0, -1]], FRAMES)
+    times_s = np.linspace(float(recording.times_s[0]), float(recording.times_s[-1]), FRAMES)
     frames.draw(times_s[0], frame)
     began_s = time.process_time()
     for time_s in times_s:
