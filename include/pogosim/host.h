@@ -285,12 +285,12 @@ int pogosim_threads_open(int count, pogosim_threads** threads);
 
 /// An array of pogosim_run_brain_array() that runs exchange with the host's memory while they take a turn.
 struct pogosim_exchange {
-    char const* category;
-    char const* name;
-    void* place;        ///< of the array of the first run; those of the others follow without gaps
-    size_t bytes_each;  ///< size of the array of one run; a run whose array has another one fails
-    int32_t gives;      ///< not 0: before its steps, the run gets what is there; only arrays that can be written
-    int32_t takes;      ///< not 0: after its steps, what it has is copied there
+    char const* category;  ///< of robots with `brain: host`
+    char const* name;      ///< of the array
+    void* place;           ///< of the array of the first run; those of the others follow without gaps
+    size_t bytes_each;     ///< size of the array of one run; a run whose array has another one fails
+    int32_t gives;         ///< not 0: before its steps, the run gets what is there; only arrays that can be written
+    int32_t takes;         ///< not 0: after its steps, what it has is copied there
 };
 
 /// Many runs make the steps that are left, as many at a time as there are threads, each by pogosim_run_step(). No run

@@ -36,20 +36,20 @@ struct pogosim_stage {
     uint32_t const* kinds;          ///< shape (objects): index into the list `kinds`
     uint32_t const* ids;            ///< shape (objects): as in the data file, for labels and for a robot to follow
     uint32_t const* part_counts;    ///< shape (objects): parts of membranes, 0 of everything else
-    size_t object_count;
+    size_t object_count;            ///< of the arrays of shape (objects)
 };
 
 /// Links between bodies. Their ends are in the box of a periodic arena, or beyond its border where they cross it.
-struct pogosim_drawn_link {
+struct pogosim_body_link {
     int32_t kind;       ///< enum pogosim_run_link_kind of pogosim/host.h
     int32_t is_pinned;  ///< not 0: `to` is a place in the arena, and gets a dot
-    float from_mm[2];
-    float to_mm[2];
-    float load;  ///< -1, pushed, to 1, pulled
+    float from_mm[2];   ///< x and y of one end
+    float to_mm[2];     ///< x and y of the other
+    float load;         ///< -1, pushed, to 1, pulled
 };
 
 /// A pair of robots of which one hears the other.
-struct pogosim_heard {
+struct pogosim_infrared_link {
     uint32_t sender;    ///< index of an object
     uint32_t listener;  ///< the same
     int32_t is_mutual;  ///< not 0: the other way round, too
@@ -64,13 +64,13 @@ struct pogosim_moment {
     float const* lamps_mm;  ///< shape (lamps, 2): where they are
     int16_t const* light;   ///< shape (rows, columns): levels of light, 0 to 32767; NULL: those of the moment before
     float const* trail_mm;  ///< shape (points, 2): where objects were, one object after the other, oldest first
-    uint32_t const* trail_rgb;     ///< shape (points): their colours there
-    uint32_t const* trail_counts;  ///< shape (objects): points of each; NULL: there are no trails
-    uint32_t trail_fading;         ///< trails fade over so many points
-    struct pogosim_heard const* heard;
-    size_t heard_count;
-    struct pogosim_drawn_link const* links;
-    size_t link_count;
+    uint32_t const* trail_rgb;                           ///< shape (points): their colours there
+    uint32_t const* trail_counts;                        ///< shape (objects): points of each; NULL: there are no trails
+    uint32_t trail_fading;                               ///< trails fade over so many points
+    struct pogosim_infrared_link const* infrared_links;  ///< shape (infrared links)
+    size_t infrared_link_count;                          ///< how many robots hear another one
+    struct pogosim_body_link const* body_links;          ///< shape (body links)
+    size_t body_link_count;                              ///< springs, rods and hinges that hold
 };
 
 /// Makes a painter. `painter` is NULL on failure.
@@ -79,7 +79,7 @@ int pogosim_painter_open(struct pogosim_stage const* stage, pogosim_painter** pa
 /// What it shows, as far as that costs a host some work: "trails", "light_levels" or "links" (infrared). 1 or 0.
 int pogosim_painter_shows(pogosim_painter const* painter, char const* part, int* is_shown);
 
-/// Draws a moment, the whole arena in the middle of the picture. `rgb`: height_px rows of width_px x 3 bytes, from the
+/// Draws a moment; the whole arena is in the middle of the picture unless `view` says otherwise (follow, zoom). `rgb`: height_px rows of width_px x 3 bytes, from the
 /// top left, each row `stride_bytes` behind the one before.
 int pogosim_painter_draw(pogosim_painter* painter, struct pogosim_moment const* moment, int32_t width_px,
                          int32_t height_px, uint8_t* rgb, size_t stride_bytes);

@@ -44,8 +44,8 @@ std::span<Key<ViewOptions> const> view_option_keys() {
           "Simulated time that the window keeps, to look at it again."},
         K{"pause_when", &ViewOptions::pause_when, any(), "",
           "The window pauses when this becomes true of a robot: values, as for color_by, numbers, + - * /, "
-          "comparisons, and, or, not, such as \"speed < 1 and heard > 10\". Looked at when rows are recorded. "
-          "Empty: never."},
+          "comparisons, and, or, not, such as \"speed < 1 and heard > 10\". Looked at after every step; columns of "
+          "the program have the values of the last row. Empty: never."},
     };
     return keys;
 }

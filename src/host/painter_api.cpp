@@ -142,7 +142,7 @@ float reach_of(Scenery const& scenery, Snapshot const& snapshot, std::uint32_t b
                : reach(shape, rotate(towards, direction(-heading)));
 }
 
-InfraredLink infrared_link(Scenery const& scenery, Snapshot const& snapshot, pogosim_heard const& pair) {
+InfraredLink infrared_link(Scenery const& scenery, Snapshot const& snapshot, pogosim_infrared_link const& pair) {
     std::uint32_t const from = rigid_body(scenery, pair.sender);
     std::uint32_t const to = rigid_body(scenery, pair.listener);
     Vec2 const from_mm = snapshot.position_mm[from];
@@ -165,10 +165,10 @@ Snapshot snapshot_of(RecordedStage const& stage, pogosim_moment const& moment) {
     if (moment.trail_counts != nullptr) {
         snapshot.trails = trails_of(*stage.scenery, moment);
     }
-    for (pogosim_heard const& pair : std::span(moment.heard, moment.heard_count)) {
+    for (pogosim_infrared_link const& pair : std::span(moment.infrared_links, moment.infrared_link_count)) {
         snapshot.links.push_back(infrared_link(*stage.scenery, snapshot, pair));
     }
-    for (pogosim_drawn_link const& link : std::span(moment.links, moment.link_count)) {
+    for (pogosim_body_link const& link : std::span(moment.body_links, moment.body_link_count)) {
         snapshot.body_links.push_back({.kind = kind_of(link.kind),
                                        .is_pinned = link.is_pinned != 0,
                                        .from_mm = point(link.from_mm),

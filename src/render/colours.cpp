@@ -18,6 +18,16 @@ Channels channels_of(Pixel colour) {
             static_cast<float>(colour & 0xFFU)};
 }
 
+/// Relative luminance in sRGB, 0 to 1: IEC 61966-2-1.
+float luminance(Pixel colour) {
+    auto const linear = [](float channel) {
+        float const value = channel / 255.0F;
+        return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+    };
+    auto const [red, green, blue] = channels_of(colour);
+    return 0.2126F * linear(red) + 0.7152F * linear(green) + 0.0722F * linear(blue);
+}
+
 Pixel pixel_of(Channels const& channels) {
     auto const rounded = [](float channel) { return static_cast<Pixel>(std::clamp(channel, 0.0F, 255.0F) + 0.5F); };
     return 0xFF000000U | rounded(channels[0]) << 16U | rounded(channels[1]) << 8U | rounded(channels[2]);
@@ -80,6 +90,15 @@ Pixel Colours::contrast_to(Pixel colour) const {
     auto const [red, green, blue] = channels_of(colour);
     float const luma = 0.299F * red + 0.587F * green + 0.114F * blue;  // ITU-R BT.601
     return luma > 0.25F * 255.0F ? edge : paper;
+}
+
+Pixel Colours::of_text_on(Pixel colour) const {
+    float const below = luminance(colour);
+    auto const ratio = [&](Pixel text) {
+        float const own = luminance(text);
+        return (std::max(own, below) + 0.05F) / (std::min(own, below) + 0.05F);
+    };
+    return ratio(paper) > ratio(edge) ? paper : edge;
 }
 
 Pixel Colours::of_share(float share) {

@@ -43,6 +43,9 @@ struct Colours {
     /// The paper or edge colour, whichever stands out from another one.
     Pixel contrast_to(Pixel colour) const;
 
+    /// The paper or edge colour, whichever has the larger contrast ratio to another one (WCAG 2.1): for text.
+    Pixel of_text_on(Pixel colour) const;
+
     /// The colour of a share of 0 to 1 of the range of a column, from dark to bright.
     static Pixel of_share(float share);
 

@@ -113,4 +113,22 @@ HeatField mean_field(Snapshot const& snapshot, std::vector<float> const& values)
     return sums.field;
 }
 
+HeatField mean_angle_field(Snapshot const& snapshot, std::vector<float> const& angles_rad) {
+    std::vector<float> cosines;
+    std::vector<float> sines;
+    for (float const angle : angles_rad) {
+        cosines.push_back(std::cos(angle));
+        sines.push_back(std::sin(angle));
+    }
+    HeatField field = mean_field(snapshot, cosines);
+    HeatField const across = mean_field(snapshot, sines);
+    for (std::size_t cell = 0; cell < field.value.size(); ++cell) {
+        float const x = field.value[cell];
+        float const y = across.value[cell];
+        field.certainty[cell] *= std::hypot(x, y);
+        field.value[cell] = std::atan2(y, x);
+    }
+    return field;
+}
+
 }  // namespace pogosim

@@ -26,4 +26,8 @@ HeatField density_field(Snapshot const& snapshot);
 /// without a value do not count. `values`: by robot.
 HeatField mean_field(Snapshot const& snapshot, std::vector<float> const& values);
 
+/// The mean direction of angles, rad, weighted likewise: that of the sum of unit vectors, whose length by robot is the
+/// less certain the more they differ (K. V. Mardia and P. E. Jupp, "Directional Statistics", 2000).
+HeatField mean_angle_field(Snapshot const& snapshot, std::vector<float> const& angles_rad);
+
 }  // namespace pogosim

@@ -79,7 +79,8 @@ ColourKey draw_heat_map(Scene const& scene) {
     Snapshot const& snapshot = scene.snapshot;
     if (snapshot.heat_map) {
         ColourKey const key = key_of(*snapshot.heat_map);
-        draw_field(scene, mean_field(snapshot, snapshot.heat_map->values), key, false);
+        auto const& field = key.is_angle ? mean_angle_field : mean_field;
+        draw_field(scene, field(snapshot, snapshot.heat_map->values), key, false);
         return key;
     }
     HeatField const field = density_field(snapshot);

@@ -32,7 +32,7 @@ void draw_labels(Scene const& scene, Text& text) {
             Vec2 const centre = scene.to_pixels(at_mm);
             int const left = whole(centre.x) + (is_inside ? -width / 2 : whole(radius_px) + 1);
             int const top = whole(centre.y) - font / 2;
-            text.draw(scene.canvas, label, font, left, top, scene.colours.contrast_to(below));
+            text.draw(scene.canvas, label, font, left, top, scene.colours.of_text_on(below));
         });
     }
 }

@@ -51,9 +51,14 @@ float truth(bool value) {
     return value ? 1.0F : 0.0F;
 }
 
-// By strength, from the weakest; of one that begins as another, the longer one first.
-constexpr std::array kOr{Operator{"or", [](float a, float b) { return truth(a != 0.0F || b != 0.0F); }}};
-constexpr std::array kAnd{Operator{"and", [](float a, float b) { return truth(a != 0.0F && b != 0.0F); }}};
+/// What is not there is not true.
+bool is_true(float value) {
+    return value != 0.0F && !std::isnan(value);
+}
+
+// By strength, from the weakest. A sign that is the beginning of another one comes after it.
+constexpr std::array kOr{Operator{"or", [](float a, float b) { return truth(is_true(a) || is_true(b)); }}};
+constexpr std::array kAnd{Operator{"and", [](float a, float b) { return truth(is_true(a) && is_true(b)); }}};
 constexpr std::array kComparisons{Operator{"<=", [](float a, float b) { return truth(a <= b); }},
                                   Operator{">=", [](float a, float b) { return truth(a >= b); }},
                                   Operator{"==", [](float a, float b) { return truth(a == b); }},
@@ -95,7 +100,7 @@ private:
     }
     Tree negation() {
         if (take("not")) {
-            return node([](float a, float) { return truth(a == 0.0F); }, deeper([this] { return negation(); }));
+            return node([](float a, float) { return truth(!is_true(a)); }, deeper([this] { return negation(); }));
         }
         return comparison();
     }
@@ -120,8 +125,11 @@ private:
         if (take("(")) {
             return bracket();
         }
-        if (take("abs") && take("(")) {
-            return node([](float a, float) { return std::abs(a); }, bracket());
+        if (std::size_t const before = at_; take("abs")) {
+            if (take("(")) {
+                return node([](float a, float) { return std::abs(a); }, bracket());
+            }
+            at_ = before;  // a value of that name
         }
         skip_blanks();
         if (at_ < text_.size() && (std::isdigit(letter()) != 0 || text_[at_] == '.')) {
@@ -259,8 +267,7 @@ std::optional<std::size_t> Condition::first_robot(RobotValues const& values) con
         of_names.push_back(values.of(name));
     }
     for (std::size_t robot = 0; robot < values.robot_count(); ++robot) {
-        float const result = root_->of(of_names, robot);
-        if (result != 0.0F && !std::isnan(result)) {
+        if (is_true(root_->of(of_names, robot))) {
             return robot;
         }
     }

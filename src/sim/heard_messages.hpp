@@ -17,6 +17,8 @@ public:
     /// Takes what was delivered in a step: messages that found room in the queue of a receiver.
     void note(World const& world, DeliveryLog const& log);
 
+    void clear() { time_s_.clear(); }
+
     /// Those of the last kHeardForS before a time, each pair of sender and receiver once, by their indices.
     std::vector<HeardMessage> until(double time_s);
 

@@ -33,6 +33,9 @@ public:
     /// Call it after each step.
     void note_step() { recent_motion_.follow(world_); }
 
+    /// Motion begins anew.
+    void forget() { recent_motion_ = RecentMotion(world_); }
+
     /// The state of a robot between two steps. Reads only: no user code runs, and no random stream is used.
     Inspection inspect(std::uint32_t robot);
 

@@ -69,6 +69,19 @@ void Simulation::restore(SavedState const& saved) {
     if (observed_motions_) {
         observed_motions_->update(world_);
     }
+    forget_what_was_seen();
+}
+
+void Simulation::forget_what_was_seen() {
+    if (heard_) {
+        heard_->clear();
+    }
+    if (snapshots_) {
+        snapshots_->forget();
+    }
+    if (inspector_) {
+        inspector_->forget();
+    }
 }
 
 }  // namespace pogosim

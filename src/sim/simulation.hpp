@@ -279,6 +279,8 @@ private:
     /// Keeps from the start what pictures are to show, or the window may.
     void prepare_pictures();
     void deliver_messages();
+    /// What pictures and the window have kept of the run so far, which goes on from another state.
+    void forget_what_was_seen();
     void stay_open();
     FreePlaces const& free_places();
     /// An object was moved from outside.

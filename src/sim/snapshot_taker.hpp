@@ -36,8 +36,11 @@ public:
     /// Adds the present positions to the trails. Call it after each step from which trails are wanted.
     void follow_trails();
 
-    /// Trails begin anew.
-    void forget_trails() { trails_.clear(); }
+    /// Trails, and ranges of values, begin anew.
+    void forget() {
+        trails_.clear();
+        ranges_.clear();
+    }
 
     /// The messages that pictures show if they are to, see SnapshotParts::heard. It outlives this.
     void show_heard(HeardMessages* heard) { heard_ = heard; }

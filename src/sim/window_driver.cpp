@@ -195,12 +195,13 @@ std::optional<UserFailure> WindowDriver::go_back(double time_s) {
     if (!states_.go_back(simulation_, time_s)) {
         return failure;
     }
-    taker_.forget_trails();
     double const step_s = simulation_.world().time_step_s;
     while (!failure && simulation_.world().time_s() < time_s - 0.5 * step_s && !simulation_.is_over()) {
         failure = simulation_.step();
+        simulation_.inspector().note_step();
         taker_.follow_trails();
     }
+    true_of_ = condition_ ? condition_->first_robot(values_) : std::nullopt;
     log().info("went back to t = {:.4f} s", simulation_.world().time_s());
     return failure;
 }

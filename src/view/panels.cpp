@@ -153,12 +153,12 @@ bool draw_switches(PanelState& state, std::function<void(Command const&)> const&
     maps.insert(maps.end(), state.setup->values.begin(), state.setup->values.end());
     choose("heat map", "none", maps, options.heat_map);
     bool is_light = options.theme == Theme::light;
-    if (ImGui::Checkbox("light", &is_light)) {
+    if (ImGui::Checkbox("light theme", &is_light)) {
         options.theme = is_light ? Theme::light : Theme::dark;
     }
     ImGui::SameLine();
     bool is_distinct = options.palette == PaletteKind::color_blind;
-    if (ImGui::Checkbox("colour-blind safe", &is_distinct)) {
+    if (ImGui::Checkbox("colour-blind", &is_distinct)) {
         options.palette = is_distinct ? PaletteKind::color_blind : PaletteKind::standard;
     }
     draw_condition(state, send);
@@ -226,6 +226,10 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
     ImGui::EndDisabled();
     if (!status.no_way_back.empty()) {
         text(fmt::format("it cannot go back: {}", status.no_way_back));
+    } else if (status.is_over) {
+        ImGui::TextUnformatted("the run is over");
+    } else if (!is_kept) {
+        text(fmt::format("it can go back to {:.2f} s", status.earliest_s));
     }
 }
 
@@ -447,6 +451,7 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state, Pa
     io.AddInputCharactersUTF8(input.text.c_str());
     press_key(io, ImGuiKey_Backspace, input.backspace);
     press_key(io, ImGuiKey_Enter, input.enter);
+    press_key(io, ImGuiKey_Escape, input.escape);
     ImGui::NewFrame();
     bool const shows_panels = state.control && has_room_for_panels({io.DisplaySize.x, io.DisplaySize.y}, scale_);
     if (shows_panels) {

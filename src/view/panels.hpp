@@ -29,6 +29,7 @@ struct PanelInput {
     std::string text{};    // typed since then, UTF-8
     bool backspace = false;
     bool enter = false;
+    bool escape = false;
 };
 
 /// A restart would overwrite files: what becomes of them?

@@ -18,7 +18,8 @@ std::size_t bytes_of(Moment const& moment) {
                                 (snapshot.heat_map ? bytes_of(snapshot.heat_map->values) : 0);
     return sizeof(Moment) + bytes_of(snapshot.position_mm) + bytes_of(snapshot.heading_rad) + bytes_of(snapshot.led) +
            bytes_of(snapshot.lamps) + bytes_of(snapshot.links) + bytes_of(snapshot.body_links) +
-           bytes_of(snapshot.velocity_mm_s) + bytes_of(snapshot.heard) + columns;
+           bytes_of(snapshot.velocity_mm_s) + bytes_of(snapshot.heard) + columns +
+           (snapshot.light ? bytes_of(snapshot.light->level) : 0);  // which several moments may share
 }
 
 }  // namespace

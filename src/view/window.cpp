@@ -68,7 +68,7 @@ public:
             options_.selected_robot.reset();
         }
         state_.condition = options_.pause_when;
-        reset_view();
+        show_whole_arena();
         if (setup.restored && setup.restored->camera) {
             camera_ = *setup.restored->camera;
         } else {
@@ -154,7 +154,8 @@ private:
     /// A key while the user types into a field; letters come as SDL_TEXTINPUT.
     void take_typing(SDL_Keycode key) {
         typed_.backspace = typed_.backspace || key == SDLK_BACKSPACE;
-        typed_.enter = typed_.enter || key == SDLK_RETURN || key == SDLK_KP_ENTER || key == SDLK_ESCAPE;
+        typed_.enter = typed_.enter || key == SDLK_RETURN || key == SDLK_KP_ENTER;
+        typed_.escape = typed_.escape || key == SDLK_ESCAPE;
     }
 
     void take_window_event(SDL_WindowEvent const& event) {
@@ -164,7 +165,7 @@ private:
             bool const was_fitted = is_fitted();
             canvas_.resize(size);
             if (was_fitted) {
-                reset_view();
+                show_whole_arena();
             }
         } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST || event.event == SDL_WINDOWEVENT_LEAVE) {
             // The button may be released outside the window.
@@ -419,9 +420,11 @@ private:
 
     bool is_fitted() const { return camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size()); }
 
+    void show_whole_arena() { camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size()); }
+
     void reset_view() {
         options_.follow.reset();
-        camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size());
+        show_whole_arena();
     }
 
     void pan(Vec2 motion_px) {
@@ -550,7 +553,8 @@ private:
         // Only the user changes these two, and the moment may be from before the simulation has taken notice.
         RunStatus const asked = state_.status;
         state_.status = newest->status;
-        bool const was_stopped = newest->status.paused && !newest->status.why_paused.empty();
+        // A condition pauses the run, too: once, since the moments that say so may be older than an answer of the user.
+        bool const was_stopped = !newest->status.why_paused.empty() && asked.why_paused.empty();
         state_.status.paused = asked.paused || was_stopped;
         state_.status.asked_speed_up = asked.asked_speed_up;
         Snapshot& snapshot = moment_->snapshot;
@@ -592,7 +596,8 @@ private:
                                .seconds = std::chrono::duration<float>(now - last_drawn_).count(),
                                .text = std::move(typed_.text),
                                .backspace = typed_.backspace,
-                               .enter = typed_.enter};
+                               .enter = typed_.enter,
+                               .escape = typed_.escape};
         typed_ = {};
         last_drawn_ = now;
         panels_.draw(canvas_, input, state_,

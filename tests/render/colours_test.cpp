@@ -126,6 +126,7 @@ TEST(Colours, OfWritingStandOutInBothThemes) {
              {colours.floor, colours.paper, colours.dark_led, colours.no_led, colours.of_led({0, 0, 25})}) {
             Triple const a = lab(linear_rgb(below));
             EXPECT_GT(std::abs(a[0] - lab(linear_rgb(colours.contrast_to(below)))[0]), 25.0) << std::hex << below;
+            EXPECT_GT(std::abs(a[0] - lab(linear_rgb(colours.of_text_on(below)))[0]), 40.0) << std::hex << below;
         }
         std::vector<Pixel> const on_floor{colours.link_by_emitter.begin(), colours.link_by_emitter.end()};
         for (Pixel const colour : on_floor) {

@@ -206,6 +206,15 @@ TEST(HeatMap, MeanLeavesOutRobotsWithoutAValue) {
     EXPECT_NEAR(*std::ranges::max_element(field.value), 2.0F, 1e-4F);
 }
 
+TEST(HeatMap, MeanOfAnglesIsThatOfDirections) {
+    Snapshot const snapshot = snapshot_of(world_with({{500, 500}, {500, 500}}));
+    HeatField const alike = mean_angle_field(snapshot, {3.09F, -3.09F});
+    auto const most = static_cast<std::size_t>(std::ranges::max_element(alike.certainty) - alike.certainty.begin());
+    EXPECT_NEAR(std::abs(alike.value[most]), 3.14159F, 1e-3F);
+    HeatField const opposite = mean_angle_field(snapshot, {0.0F, 3.14159265F});
+    EXPECT_LT(*std::ranges::max_element(opposite.certainty), 1e-5F);
+}
+
 TEST(HeatMap, ColoursTheFloorWithinTheWalls) {
     Snapshot const snapshot = snapshot_of(world_with({{500, 500}, {500, 560}}));
     ViewOptions options = nothing();

@@ -66,6 +66,9 @@ TEST_F(ConditionTest, ComparisonWithNoValueIsFalse) {
     EXPECT_EQ(first("0 / 0 == 0 / 0"), std::nullopt);
     EXPECT_EQ(first("0 / 0 != 1"), std::nullopt);
     EXPECT_EQ(first("0 / 0"), std::nullopt);
+    EXPECT_EQ(first("0 / 0 or 0 / 0"), std::nullopt);
+    EXPECT_EQ(first("x > 0 and 0 / 0"), std::nullopt);
+    EXPECT_EQ(first("not 0 / 0"), 0U);
 }
 
 TEST_F(ConditionTest, WhatIsNoConditionIsToldWithItsPlace) {
@@ -90,6 +93,7 @@ TEST_F(ConditionTest, WhatIsNoConditionIsToldWithItsPlace) {
 TEST_F(ConditionTest, NamesAreThoseInIt) {
     EXPECT_EQ(Condition("x > 1 and y < x", {"x", "y", "xy"}).names(), (std::vector<std::string>{"x", "y"}));
     EXPECT_EQ(Condition("xy > 1", {"x", "xy"}).names(), std::vector<std::string>{"xy"});
+    EXPECT_EQ(Condition("abs > 1 or abs(abs) < 2", {"abs"}).names(), std::vector<std::string>{"abs"});
     EXPECT_EQ(Condition("my column > 1", {"my column"}).names(), std::vector<std::string>{"my column"});
 }
 

@@ -32,6 +32,9 @@ TEST(HeardMessages, AreThoseOfTheLastSecondEachPairOnce) {
     EXPECT_EQ(found[1].sender, 2U);
     EXPECT_EQ(heard.until(1.55).size(), 1U);
     EXPECT_TRUE(heard.until(3.0).empty());
+    heard.note(world, delivered(50, 1, 2, 1));
+    heard.clear();
+    EXPECT_TRUE(heard.until(5.5).empty());
 }
 
 }  // namespace

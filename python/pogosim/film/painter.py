@@ -55,10 +55,10 @@ class MomentData(ctypes.Structure):
         ("trail_rgb", c_void_p),
         ("trail_counts", c_void_p),
         ("trail_fading", c_uint32),
-        ("heard", c_void_p),
-        ("heard_count", c_size_t),
-        ("links", c_void_p),
-        ("link_count", c_size_t),
+        ("infrared_links", c_void_p),
+        ("infrared_link_count", c_size_t),
+        ("body_links", c_void_p),
+        ("body_link_count", c_size_t),
     )
 
 
@@ -203,9 +203,9 @@ class Painter:
             data.trail_rgb = fits("trails.rgb", trails.rgb, np.uint32, (points,))
             data.trail_fading = trails.fading
         if moment.heard is not None:
-            data.heard = fits("heard", moment.heard, HEARD, (len(moment.heard),))
-            data.heard_count = len(moment.heard)
+            data.infrared_links = fits("heard", moment.heard, HEARD, (len(moment.heard),))
+            data.infrared_link_count = len(moment.heard)
         if moment.links is not None:
-            data.links = fits("links", moment.links, LINK, (len(moment.links),))
-            data.link_count = len(moment.links)
+            data.body_links = fits("links", moment.links, LINK, (len(moment.links),))
+            data.body_link_count = len(moment.links)
         return data

@@ -202,6 +202,8 @@ class VectorSimulation:
                 finally:
                     for run in np.flatnonzero(turns["has_messages"]).tolist():
                         self.simulations[run]._pass_messages_on()
+            for brain in self._brains.values():
+                brain._note_step(runs)
         if failed:
             run = min(failed)
             raise type(failed[run])(f"run {run}: {failed[run]}")

@@ -108,16 +108,19 @@ class VectorBrain(BrainArrays):
                 f"{self._robots}: reset it with as many, or make another VectorSimulation"
             )
 
+    def _note_step(self, runs: ManyRuns) -> None:
+        """Remember that the arrays show what the runs have measured."""
+        self._seen = moments_of(runs)
+
     def _exchanges(self, runs: ManyRuns) -> list[Exchange]:
         """Return what a step gives the runs, and takes: what they have measured, and which messages wait still.
 
         Raises:
             ConfigurationError: A run has another number of robots than the others.
         """
-        if self._seen != (now := moments_of(runs)):
+        if self._seen != moments_of(runs):
             for index in range(len(runs.states)):
                 self._check_size(runs, index)
-            self._seen = now
         category = self._category.encode()
         return [
             Exchange(
