@@ -250,7 +250,7 @@ def test_interrupt_cancels_the_jobs(site: dict[str, str], tmp_path: Path) -> Non
     write(tmp_path)
     for number in (signal.SIGINT, signal.SIGTERM):
         process = start(tmp_path, site)
-        wait_until(lambda: jobs(site) or process.poll() is not None)  # noqa: B023
+        wait_until(lambda: ((tmp_path / "tmp").exists() and jobs(site)) or process.poll() is not None)  # noqa: B023
         process.send_signal(number)
         result = ended(process, tmp_path)
         assert (result.code, result.errors.count("\n")) == (130, 1), result.errors
