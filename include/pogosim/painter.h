@@ -79,8 +79,8 @@ int pogosim_painter_open(struct pogosim_stage const* stage, pogosim_painter** pa
 /// What it shows, as far as that costs a host some work: "trails", "light_levels" or "links" (infrared). 1 or 0.
 int pogosim_painter_shows(pogosim_painter const* painter, char const* part, int* is_shown);
 
-/// Draws a moment; the whole arena is in the middle of the picture unless `view` says otherwise (follow, zoom). `rgb`: height_px rows of width_px x 3 bytes, from the
-/// top left, each row `stride_bytes` behind the one before.
+/// Draws a moment; the whole arena is in the middle of the picture unless `view` says otherwise (follow, zoom). `rgb`:
+/// height_px rows of width_px x 3 bytes, from the top left, each row `stride_bytes` behind the one before.
 int pogosim_painter_draw(pogosim_painter* painter, struct pogosim_moment const* moment, int32_t width_px,
                          int32_t height_px, uint8_t* rgb, size_t stride_bytes);
 
