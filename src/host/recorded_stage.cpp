@@ -237,7 +237,6 @@ RecordedStage read_stage(pogosim_stage const& stage) {
             throw ConfigError(fmt::format("part_counts: a membrane has at least 2 parts, or none; object {} has 1", i));
         }
         add_object(scenery, kind, {.id = stage.ids[i], .category = number}, stage.part_counts[i]);
-        read.part_count += stage.part_counts[i];
     }
     read.scenery = std::make_shared<Scenery const>(std::move(scenery));
     return read;

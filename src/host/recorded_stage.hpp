@@ -19,7 +19,6 @@ struct RecordedStage {
     int light_columns = 1;
     int light_rows = 1;
     std::vector<Shape> lamps;
-    std::size_t part_count = 0;  // of all membranes
 };
 
 /// Throws ConfigError for a description or an array that is wrong.

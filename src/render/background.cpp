@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/between.hpp"
 #include "render/blend.hpp"
 #include "render/led_colour.hpp"
 #include "render/scene.hpp"
@@ -122,17 +123,6 @@ void Background::draw_light(Camera const& camera, Scenery const& scenery, LightM
         return palette::kBrightestLamplight * std::clamp(share, 0.0F, 1.0F);
     });
 
-    // Between the centres of four cells: bilinear.
-    struct Between {
-        std::size_t low;
-        std::size_t high;
-        float share;  // of the higher one
-    };
-    auto const between = [](float position, int count) {
-        float const within = std::clamp(position - 0.5F, 0.0F, static_cast<float>(count - 1));
-        auto const low = static_cast<std::size_t>(within);
-        return Between{low, std::min(low + 1, static_cast<std::size_t>(count - 1)), within - std::floor(within)};
-    };
     PictureSize const size = picture_.size();
     std::vector<Between> columns(static_cast<std::size_t>(size.width_px));
     for (int x = 0; x < size.width_px; ++x) {

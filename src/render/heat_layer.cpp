@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/between.hpp"
 #include "render/blend.hpp"
 #include "render/heat_field.hpp"
 #include "render/layers.hpp"
@@ -14,19 +15,6 @@ namespace {
 
 constexpr float kOpacity = 0.85F;
 constexpr float kFaintShare = 0.12F;  // of the range: a density below fades into the floor
-
-/// What a pixel between the centres of four cells is made of, along one axis.
-struct Between {
-    std::size_t low = 0;
-    std::size_t high = 0;
-    float share = 0.0F;  // of the higher one
-};
-
-Between between(float place, int count) {
-    float const within = std::clamp(place - 0.5F, 0.0F, static_cast<float>(count - 1));
-    auto const low = static_cast<std::size_t>(within);
-    return {low, std::min(low + 1, static_cast<std::size_t>(count - 1)), within - std::floor(within)};
-}
 
 /// The least round number that is not below.
 float round_up(float value) {
