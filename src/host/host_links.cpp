@@ -9,6 +9,7 @@
 #include "base/narrowed.hpp"
 #include "device/link_edit.hpp"
 #include "host/hosted_run.hpp"
+#include "host/link_kind.hpp"
 #include "host/status.hpp"
 #include "pogosim/host.h"
 #include "world/link_places.hpp"
@@ -29,19 +30,6 @@ std::int32_t kind_of(LinkKind kind) {
             break;
     }
     return POGOSIM_RUN_HINGE;
-}
-
-LinkKind kind_of(std::int32_t kind) {
-    switch (kind) {
-        case POGOSIM_RUN_SPRING:
-            return LinkKind::spring;
-        case POGOSIM_RUN_ROD:
-            return LinkKind::rod;
-        case POGOSIM_RUN_HINGE:
-            return LinkKind::hinge;
-        default:
-            throw ConfigError(fmt::format("kind: expected 0 (spring), 1 (rod) or 2 (hinge), found {}", kind));
-    }
 }
 
 Vec2 point(double const (&mm)[2]) {
@@ -97,7 +85,8 @@ int pogosim_run_links(pogosim_run const* run, pogosim_run_link* links, size_t ro
 int pogosim_run_new_link(pogosim_run const* run, int32_t kind, size_t a, int64_t b, pogosim_run_link* link) {
     return with_status_of(*run, [&] {
         World const& world = run->simulation().world();
-        NewLink const made = link_between(world, kind_of(kind), object_of(static_cast<std::int64_t>(a)), object_of(b));
+        NewLink const made = link_between(world, link_kind_of(kind, "kind: expected"),
+                                          object_of(static_cast<std::int64_t>(a)), object_of(b));
         *link = {.kind = kind,
                  .a = static_cast<std::int32_t>(made.a),
                  .b = made.b == kNone ? -1 : static_cast<std::int32_t>(made.b),
@@ -120,7 +109,8 @@ int pogosim_run_new_link(pogosim_run const* run, int32_t kind, size_t a, int64_t
 
 int pogosim_run_add_link(pogosim_run* run, pogosim_run_link const* link, size_t* index) {
     return with_status_of(*run, [&] {
-        NewLink made{.kind = kind_of(link->kind), .a = object_of(link->a), .b = object_of(link->b)};
+        NewLink made{
+            .kind = link_kind_of(link->kind, "kind: expected"), .a = object_of(link->a), .b = object_of(link->b)};
         made.end_a_mm = point(link->end_a_mm);
         made.end_b_mm = point(link->end_b_mm);
         if (!std::isnan(link->rest_mm)) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "host/link_kind.hpp"
 #include "host/pixels.hpp"
 #include "host/recorded_stage.hpp"
 #include "host/status.hpp"
@@ -37,19 +38,6 @@ Vec2 point(float const* mm) {
 Rgb colour_of(std::uint32_t rgb) {
     return {static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U),
             static_cast<std::uint8_t>(rgb)};
-}
-
-LinkKind kind_of(std::int32_t kind) {
-    switch (kind) {
-        case POGOSIM_RUN_SPRING:
-            return LinkKind::spring;
-        case POGOSIM_RUN_ROD:
-            return LinkKind::rod;
-        case POGOSIM_RUN_HINGE:
-            return LinkKind::hinge;
-        default:
-            throw ConfigError(fmt::format("links: expected the kind 0 (spring), 1 (rod) or 2 (hinge), found {}", kind));
-    }
 }
 
 void copy_bodies(Scenery const& scenery, pogosim_moment const& moment, Snapshot& snapshot) {
@@ -169,7 +157,7 @@ Snapshot snapshot_of(RecordedStage const& stage, pogosim_moment const& moment) {
         snapshot.links.push_back(infrared_link(*stage.scenery, snapshot, pair));
     }
     for (pogosim_body_link const& link : std::span(moment.body_links, moment.body_link_count)) {
-        snapshot.body_links.push_back({.kind = kind_of(link.kind),
+        snapshot.body_links.push_back({.kind = link_kind_of(link.kind, "links: expected the kind"),
                                        .is_pinned = link.is_pinned != 0,
                                        .from_mm = point(link.from_mm),
                                        .to_mm = point(link.to_mm),
