@@ -173,19 +173,20 @@ TEST(Restart, WithoutASeedIsNone) {
 
 TEST(Restart, WithAWindowThatMakesNoSenseHasTheSeedAlone) {
     for (char const* const text : {
-             "3 0", "3 0 1 2", "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0",  // one number is missing
-             "3 0 10 20 800 600 2 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",                 // neither off nor on
-             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 3 1 0 0 -1",                 // no such layer
-             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 -1 1 0 0 -1",                //
-             "3 0 10 20 wide 600 0 0 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",                //
-             "3 0 10 20 800 600 0 nan 0 0 0 1 1 0 0 1 1 0 1 0 0 -1",               //
+             "3 0", "3 0 1 2", "3 0 10 20 800 600 0 0 0 0 0 1 1 0 -1",  // one number is missing
+             "3 0 10 20 800 600 2 0 0 0 0 1 1 0 0 -1",                  // neither off nor on
+             "3 0 10 20 wide 600 0 0 0 0 0 1 1 0 0 -1",                 //
+             "3 0 10 20 800 600 0 nan 0 0 0 1 1 0 0 -1",                //
+             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 -1\nlinks: beside",   // no such layer
+             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 -1\nlinks: [",        // no YAML
+             "3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 -1 robot",            // no map
          }) {
         auto const restart = taken(text);
         ASSERT_TRUE(restart) << text;
         EXPECT_EQ(restart->seed, 3U) << text;
         EXPECT_FALSE(restart->window) << text;
     }
-    auto const whole = taken("3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 1 1 2 1 0 0 -1");
+    auto const whole = taken("3 0 10 20 800 600 0 0 0 0 0 1 1 0 0 -1\nlinks: above");
     ASSERT_TRUE(whole && whole->window);
     EXPECT_EQ(whole->window->size, (PictureSize{800, 600}));
     EXPECT_FALSE(whole->window->camera);

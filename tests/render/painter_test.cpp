@@ -22,7 +22,7 @@ using testing::add_robot;
 using testing::square_world;
 
 constexpr PictureSize kSize{400, 400};
-constexpr ViewOptions kNothingWritten{.time = false, .scale_bar = false};
+ViewOptions const kNothingWritten{.time = false, .scale_bar = false};
 constexpr Rgb kRed{25, 0, 0};
 constexpr Rgb kGreen{0, 25, 0};
 constexpr Pixel kLitRed = 0xFFD20000;
