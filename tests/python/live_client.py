@@ -37,6 +37,11 @@ class Client:
     others: list[dict[str, Any]] = field(default_factory=list)
     light: npt.NDArray[np.uint8] | None = None
 
+    @property
+    def last(self) -> Picture:
+        """What is seen now; waits for it where a new run has not been seen yet."""
+        return wait_for(lambda: self.pictures)[-1]  # type: ignore[no-any-return]
+
     def take(self, message: dict[str, Any] | bytes) -> None:
         """Take a message."""
         if isinstance(message, bytes):
@@ -48,7 +53,7 @@ class Client:
             shapes = ((count, 3), (count, 2), (parts, 2), (count, 2))
             self._tables = [np.zeros(shape, np.uint16) for shape in shapes]
             self._column = 0
-            self.pictures.clear()
+            self.pictures = []  # a new list, for what has been seen is never forgotten while it is read
         elif message["kind"] == "status":
             self.status = message
         else:

@@ -286,7 +286,15 @@ def test_random_keys_and_clicks_leave_the_page_alive(shown: Shown) -> None:
         else:
             shown.page.mouse.click(float(chance.integers(1000)), float(chance.integers(650)))
     shown.page.keyboard.press("End")
-    shown.value("document.getElementById('reset').click()")  # comes after all that was asked for before
+    shown.value(
+        """() => {
+            document.getElementById("reset").click();
+            const field = document.querySelector('#parameters [aria-label="gain, as a number"]');
+            field.value = "7.5";
+            field.dispatchEvent(new Event("change"));
+        }"""
+    )
+    wait_for(lambda: shown.simulation.parameters.get("gain") == 7.5)  # so all that was asked for before is done
     shown.wait("live.view?.state.time === 0")
     shown.live.play()
-    shown.wait("live.view.state.time > 0.1")
+    shown.wait("live.view?.state.time > 0.1")

@@ -57,7 +57,7 @@ class Watcher(Client):
     def _hear(self, message: dict[str, Any] | bytes) -> None:
         self.take(message)
         if isinstance(message, bytes) and message[0] == 1 and self.answers:
-            self.viewer.was_shown(self.pictures[-1].number)
+            self.viewer.was_shown(self.last.number)
 
     def do(self, name: str, /, **values: Any) -> None:
         self.live.do(self.viewer, read_command({"do": name, **values}))
@@ -69,10 +69,6 @@ class Watcher(Client):
         """The last picture has these values of the robots, and none of the ball."""
         column = self.last.column
         return column is not None and np.array_equal(column[:12], expected) and bool(np.isnan(column[12]))
-
-    @property
-    def last(self) -> Picture:
-        return self.pictures[-1]
 
 
 def assert_shows(picture: Picture, simulation: pogosim.Simulation, tolerance_mm: float) -> None:

@@ -158,7 +158,7 @@ class Viewer(Client):
             for message in self.socket:
                 self.take(message if isinstance(message, bytes) else json.loads(message))
                 if isinstance(message, bytes) and message[0] == 1:
-                    self.do("shown", frame=self.pictures[-1].number)
+                    self.do("shown", frame=self.last.number)
 
     def do(self, name: str, /, **values: Any) -> None:
         self.socket.send(json.dumps({"do": name, **values}))
@@ -240,9 +240,9 @@ def test_viewers_steer_one_at_a_time_and_look_on(served: Served) -> None:
     assert [own.status["steers"] for own in (first, second, reader)] == [True, False, False]
     first.do("step", steps=25)
     viewers = (first, second, reader)
-    wait_for(lambda: all(own.pictures[-1].time_s == 0.25 for own in viewers))
+    wait_for(lambda: all(own.last.time_s == 0.25 for own in viewers))
     for viewer in viewers:
-        np.testing.assert_array_equal(viewer.pictures[-1].poses, first.pictures[-1].poses)
+        np.testing.assert_array_equal(viewer.last.poses, first.last.poses)
     reader.do("step", steps=1)
     assert "looks on" in wait_for(lambda: reader.of_kind("refused"))[0]["message"]
     first.close()
@@ -314,9 +314,9 @@ def test_fuzzed_clients_leave_the_server_and_the_run_alone(served: Served) -> No
             if chance.random() < 0.5:
                 raw.shutdown(socket.SHUT_WR)
     viewer = served.view()
-    assert viewer.pictures[-1].time_s == 0.0  # none of them may steer
+    assert viewer.last.time_s == 0.0  # none of them may steer
     viewer.do("step", steps=2)
-    wait_for(lambda: viewer.pictures[-1].time_s == 0.02)
+    wait_for(lambda: viewer.last.time_s == 0.02)
     said = served.end()
     assert "Traceback" not in said
     assert "data.feather is complete" in said
@@ -439,7 +439,7 @@ def test_flood_of_messages_is_served_in_turn(served: Served) -> None:
     for number in range(3000):
         own.do("select", object=number % 20)
     own.do("step", steps=4)
-    wait_for(lambda: other.pictures[-1].time_s == 0.04)
+    wait_for(lambda: other.last.time_s == 0.04)
     own.close()
     other.close()
 
@@ -503,13 +503,13 @@ def test_slow_line_gets_fewer_pictures_and_they_are_not_old(hosted: Path, tmp_pa
         slow = served.view(port=line.port)
         fast = served.view(served.look)
         slow.do("play")
-        wait_for(lambda: slow.pictures[-1].time_s > 3.0, 60.0)
-        late_s = fast.pictures[-1].time_s - slow.pictures[-1].time_s
+        wait_for(lambda: slow.last.time_s > 3.0, 60.0)
+        late_s = fast.last.time_s - slow.last.time_s
         assert late_s < 1.5
         assert len(slow.pictures) < len(fast.pictures)
         slow.do("pause")
-        wait_for(lambda: not fast.status["playing"] and slow.pictures[-1].time_s == fast.pictures[-1].time_s, 60.0)
-        np.testing.assert_array_equal(slow.pictures[-1].poses, fast.pictures[-1].poses)
+        wait_for(lambda: not fast.status["playing"] and slow.last.time_s == fast.last.time_s, 60.0)
+        np.testing.assert_array_equal(slow.last.poses, fast.last.poses)
 
 
 def test_lines_of_robots_and_warnings_are_printed_and_told(served: Served) -> None:

@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-constexpr SnapshotParts kAll{.light = true, .links = true, .trails = true};
+SnapshotParts const kAll{.light = true, .links = true, .trails = true};
 
 void idle() {}
 
