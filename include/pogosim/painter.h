@@ -71,12 +71,17 @@ struct pogosim_moment {
     size_t infrared_link_count;                          ///< how many robots hear another one
     struct pogosim_body_link const* body_links;          ///< shape (body links)
     size_t body_link_count;                              ///< springs, rods and hinges that hold
+    float const* velocity_mm_s;  ///< shape (objects, 2), for arrows; NaN: it has none; NULL: none has
+    float const* heat;  ///< shape (objects): what a heat map of a value shows, NaN: it has none; NULL: none has
+    float heat_low;     ///< the value at which the colours of the heat map begin
+    float heat_high;    ///< the value at which they end
 };
 
 /// Makes a painter. `painter` is NULL on failure.
 int pogosim_painter_open(struct pogosim_stage const* stage, pogosim_painter** painter);
 
-/// What it shows, as far as that costs a host some work: "trails", "light_levels" or "links" (infrared). 1 or 0.
+/// What it shows, as far as that costs a host some work: "trails", "light_levels", "links" (infrared) or "velocities".
+/// 1 or 0.
 int pogosim_painter_shows(pogosim_painter const* painter, char const* part, int* is_shown);
 
 /// Draws a moment; the whole arena is in the middle of the picture unless `view` says otherwise (follow, zoom). `rgb`:

@@ -19,6 +19,10 @@ class AnalysisError(ToolError, ValueError):
     """Data do not have what an analysis needs; says what, and what to do."""
 
 
+class MissingColumnWarning(RuntimeWarning):
+    """A data file does not have what pictures of its run were to show."""
+
+
 class AmbiguousStepsWarning(RuntimeWarning):
     """Rows are so far apart in time that robots may have gone another way than the shortest."""
 

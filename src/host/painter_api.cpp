@@ -72,6 +72,27 @@ void copy_colours(RecordedStage const& stage, std::uint32_t const* rgb, Snapshot
     }
 }
 
+void copy_velocities(Scenery const& scenery, float const* velocity_mm_s, Snapshot& snapshot) {
+    for (Object const& object : scenery.objects) {
+        if (object.body_count == 1) {
+            snapshot.velocity_mm_s.push_back(point(velocity_mm_s));
+        } else {
+            snapshot.velocity_mm_s.resize(snapshot.velocity_mm_s.size() + object.body_count);
+        }
+        velocity_mm_s += 2;
+    }
+}
+
+RobotColumn heat_of(RecordedStage const& stage, pogosim_moment const& moment) {
+    RobotColumn heat{.name = stage.view.heat_map, .values = {}, .low = moment.heat_low, .high = moment.heat_high};
+    for (std::size_t i = 0; i < stage.scenery->objects.size(); ++i) {
+        if (stage.scenery->objects[i].robot != kNone) {
+            heat.values.push_back(moment.heat[i]);
+        }
+    }
+    return heat;
+}
+
 std::shared_ptr<Trails const> trails_of(Scenery const& scenery, pogosim_moment const& moment) {
     std::vector<TrailPoint> points;
     std::vector<std::uint32_t> counts;
@@ -153,6 +174,12 @@ Snapshot snapshot_of(RecordedStage const& stage, pogosim_moment const& moment) {
     if (moment.trail_counts != nullptr) {
         snapshot.trails = trails_of(*stage.scenery, moment);
     }
+    if (moment.velocity_mm_s != nullptr) {
+        copy_velocities(*stage.scenery, moment.velocity_mm_s, snapshot);
+    }
+    if (moment.heat != nullptr && !parts_for(stage.view).heat_map.empty()) {
+        snapshot.heat_map = heat_of(stage, moment);
+    }
     for (pogosim_infrared_link const& pair : std::span(moment.infrared_links, moment.infrared_link_count)) {
         snapshot.links.push_back(infrared_link(*stage.scenery, snapshot, pair));
     }
@@ -180,8 +207,8 @@ int pogosim_painter_open(pogosim_stage const* stage, pogosim_painter** painter) 
 
 int pogosim_painter_shows(pogosim_painter const* painter, char const* part, int* is_shown) {
     SnapshotParts const parts = parts_for(painter->stage.view);
-    for (auto const& [name, is_wanted] :
-         {std::pair{"trails", parts.trails}, std::pair{"light_levels", parts.light}, std::pair{"links", parts.links}}) {
+    for (auto const& [name, is_wanted] : {std::pair{"trails", parts.trails}, std::pair{"light_levels", parts.light},
+                                          std::pair{"links", parts.links}, std::pair{"velocities", parts.velocities}}) {
         if (std::string_view(name) == part) {
             *is_shown = is_wanted ? 1 : 0;
             return POGOSIM_OK;

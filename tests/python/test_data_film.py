@@ -19,7 +19,7 @@ import pandas as pd
 import pytest
 from PIL import Image
 from pogosim import Simulation
-from pogosim.errors import PictureError
+from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.film.ahead import made_ahead
 from pogosim.film.cards import card
 from pogosim.film.command import main
@@ -684,3 +684,54 @@ def test_names_that_look_like_marks_of_the_page_are_names(tmp_path: Path) -> Non
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert "<title>@@DATA@@" in page
     assert '"@@HEAD@@"' in page
+
+
+def test_colours_of_the_view_are_those_of_the_option(tmp_path: Path) -> None:
+    rows = walkers()
+    path = tmp_path / "a.feather"
+    by_option = read_recording(write(path, rows), color_by="heard").last
+    by_view = read_recording(write(path, rows, None, view={"color_by": "heard"})).last
+    pd.testing.assert_frame_equal(by_view.rows, by_option.rows)
+    assert read_recording(path, color_by="").last.colouring is None
+    assert read_recording(path, color_by="led_rgb").last.colouring is None
+    assert read_recording(write(path, rows, None, view={"color_by": "speed"})).last.colouring is not None
+    write(path, rows, None, view={"color_by": "light"})
+    with pytest.warns(MissingColumnWarning, match="view.color_by: the data file has no column light"):
+        assert read_recording(path).last.colouring is None
+
+
+def test_arrows_reach_to_where_robots_would_be_a_second_later(tmp_path: Path) -> None:
+    moments = frames_of(read_recording(write(tmp_path / "a.feather", walkers(2))), velocities=True).moments
+    for time_s in (0.0, 0.7, 2.0, 9.0):
+        velocities = moments.at(time_s).velocities
+        assert velocities is not None
+        np.testing.assert_allclose(velocities, [[0.0, 100.0]] * 2, atol=1e-3)
+    plain = frames_of(read_recording(tmp_path / "a.feather"), 800)
+    assert plain.moments.at(0.0).velocities is None
+    arrows = frames_of(read_recording(tmp_path / "a.feather"), 800, velocities=True)
+    drawn = np.argwhere((pixels(arrows, 0.0) != pixels(plain, 0.0)).any(axis=2))
+    lowest_mm = (drawn[:, 0].max() - ABOVE_PX - 400) / scale_of(arrows) + SIDE_MM / 2
+    assert lowest_mm == pytest.approx(200.0, abs=3.0)  # 100 mm below the robot at 100 mm
+
+
+def test_heat_map_of_a_value_has_the_colours_of_its_lowest_and_highest(tmp_path: Path) -> None:
+    rows = walkers(2).assign(level=lambda own: np.where(own["robot_id"] == 0, 5.0, 9.0))
+    path = write(tmp_path / "a.feather", rows, None, view={"heat_map": "level"})
+    frames = frames_of(read_recording(path), 800)
+    moment = frames.moments.at(0.0)
+    np.testing.assert_array_equal(moment.heat, np.array([5.0, 9.0], np.float32))
+    assert moment.heat_span == (5.0, 9.0)
+    left, right = (pixels(frames, 0.0)[ABOVE_PX + 30 : ABOVE_PX + 60, x : x + 20].mean(axis=(0, 1)) for x in (190, 590))
+    assert right[0] > left[0] + 100  # yellow against violet
+    assert right[1] > left[1] + 100
+    assert frames_of(read_recording(path), 800, heat_map="").moments.at(0.0).heat is None
+
+
+def test_heat_map_of_what_the_file_does_not_have_is_told(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.feather", walkers(), None, view={"heat_map": "light"})
+    with pytest.warns(MissingColumnWarning, match="view.heat_map: the data file has no numbers light"):
+        assert frames_of(read_recording(path)).moments.at(0.0).heat is None
+    with pytest.raises(PictureError, match="no column hoard; did you mean 'heard'"):
+        frames_of(read_recording(path), heat_map="hoard")
+    with pytest.raises(PictureError, match=r"column state holds no numbers \(heat_map\)"):
+        frames_of(read_recording(path), heat_map="state")

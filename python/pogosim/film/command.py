@@ -36,7 +36,7 @@ def view_option(text: str) -> tuple[str, Any]:
     if not key or not equals:
         raise argparse.ArgumentTypeError(f"{text} is no key and value, such as trails=true")
     try:
-        return key, yaml.safe_load(value)
+        return key, yaml.safe_load(value) if value else ""
     except yaml.YAMLError:
         raise argparse.ArgumentTypeError(f"{value} is no value of {key} in YAML") from None
 

@@ -72,10 +72,11 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
     if suffix == ".gif" and options.fps > GIF_FPS:
         warn(prog, f"a GIF has {GIF_FPS:g} frames per second, not {options.fps:g}: players show more of them slowly")
         options = argparse.Namespace(**{**vars(options), "fps": GIF_FPS})
+    color_by = dict(options.view).get("color_by") if options.color_by is None else options.color_by
     recordings = []
     for data in options.data:
         with sayings(data):
-            recordings.append(load(argparse.Namespace(**{**vars(options), "data": data}), prog))
+            recordings.append(load(argparse.Namespace(**{**vars(options), "data": data, "color_by": color_by}), prog))
     with sayings(", ".join(options.data)):
         times_s = span(recordings, options)
         if suffix == PAGE:

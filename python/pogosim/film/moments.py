@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -11,17 +12,21 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.arguments import number
+from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.film.painter import HEARD, LINK, LINK_KINDS, Moment, Numbers, Painter, Stage, Trails
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.film.trails import Trail, TrailOfPlaces, TrailOfSeconds
 from pogosim.periodic import minimum_image
 from pogosim.picture.body_links import placed_links
+from pogosim.picture.colouring import checked_column, holds_numbers, numbers_of
 from pogosim.picture.links import box_of, proximity_pairs
 from pogosim.picture.palette import DARK_WALL
+from pogosim.picture.speed import SPEED, with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording
 from pogosim.scene import BRIGHTEST, Kind, bounds, light_levels
 from pogosim.shapes import Floats, Shape
 
+DENSITY = "density"  # the heat map of where robots are
 LIGHT_CELLS = 100.0  # columns and rows of the map of light, where a file does not say
 
 SIZES = {
@@ -149,6 +154,7 @@ class Moments:
         self.trail: Trail | None = None
         if self.painter.shows("trails"):
             self.trail = TrailOfSeconds(self.line, self.rgb, tail_s) if tail_s else TrailOfPlaces(self.line, self.rgb)
+        self.heat, self.heat_span = self.heat_of(recording.configuration, options)
         talks = np.array([kind.talks for kind in swarm.kinds])[self.kinds]
         self.talkers = np.flatnonzero(talks) if self.painter.shows("links") else None
 
@@ -157,6 +163,29 @@ class Moments:
         if self.shows_leds:
             return rows["led_rgb"].to_numpy().astype(np.uint32)
         return packed(rows[RGB].to_numpy(dtype=float))
+
+    def heat_of(
+        self, configuration: Mapping[str, Any], options: Mapping[str, Any]
+    ) -> tuple[npt.NDArray[np.float32] | None, tuple[float, float]]:
+        """Values of rows that a heat map shows, shape (rows,), and the least and the greatest.
+
+        None, and pictures show none, where none is wanted or it is that of the density.
+        """
+        name = options.get("heat_map", shown_by(configuration)["view"].get("heat_map", ""))
+        if name in ("", DENSITY):
+            return None, (0.0, 0.0)
+        rows = self.line.rows
+        if name == SPEED:
+            rows = with_speed(rows, self.swarm.period_mm, self.swarm.top_speed_mm_s)
+        if "heat_map" in options and not holds_numbers(checked_column(rows, str(name))):
+            raise PictureError(f"its column {name} holds no numbers (heat_map)")
+        if name not in rows or not holds_numbers(rows[name]):
+            warnings.warn(f"view.heat_map: the data file has no numbers {name}", MissingColumnWarning, stacklevel=4)
+            return None, (0.0, 0.0)
+        values = numbers_of(rows[str(name)])
+        known = values[np.isfinite(values)]
+        span = (float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)
+        return values.astype(np.float32), span
 
     def wall_of(self, walls: pd.DataFrame, number: int) -> tuple[Floats, Numbers]:
         """Times and colours of a wall, the one before its first row included."""
@@ -197,6 +226,13 @@ class Moments:
         poses[there, :2], poses[there, 2] = place, heading
         rgb = np.zeros(len(there), np.uint32)
         rgb[there] = self.rgb[rows]
+        velocities = heat = None
+        if self.painter.shows("velocities"):
+            velocities = np.full((self.painter.objects, 2), np.nan, np.float32)
+            velocities[: len(there)][there] = line.velocities_at(time_s)
+        if self.heat is not None:
+            heat = np.full(self.painter.objects, np.nan, np.float32)
+            heat[: len(there)][there] = self.heat[rows]
         walls = [colours[np.searchsorted(times, time_s, side="right")] for times, colours in self.walls]
         poses = np.concatenate([poses, np.full((len(walls), 3), np.nan, np.float32)])
         return Moment(
@@ -209,6 +245,9 @@ class Moments:
             trails=None if self.trail is None else self.trails_at(time_s),
             heard=self.heard(poses),
             links=self.links_at(time_s),
+            velocities=velocities,
+            heat=heat,
+            heat_span=self.heat_span,
         )
 
     def trails_at(self, time_s: float) -> Trails | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import json
 import re
-from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint32, c_void_p
+from ctypes import byref, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,6 +59,10 @@ class MomentData(ctypes.Structure):
         ("infrared_link_count", c_size_t),
         ("body_links", c_void_p),
         ("body_link_count", c_size_t),
+        ("velocity_mm_s", c_void_p),
+        ("heat", c_void_p),
+        ("heat_low", c_float),
+        ("heat_high", c_float),
     )
 
 
@@ -96,6 +100,9 @@ class Moment:
     trails: Trails | None = None
     heard: npt.NDArray[Any] | None = None  # of HEARD, shape (pairs,)
     links: npt.NDArray[Any] | None = None  # of LINK, shape (links,)
+    velocities: npt.NDArray[np.float32] | None = None  # shape (n, 2), mm/s; NaN: it has none
+    heat: npt.NDArray[np.float32] | None = None  # shape (n,): what the heat map shows, if that is a value; NaN: none
+    heat_span: tuple[float, float] = (0.0, 0.0)  # the values at which its colours begin and end
 
 
 def fits(name: str, values: npt.NDArray[Any], kind: npt.DTypeLike, shape: tuple[int, ...]) -> int:
@@ -157,7 +164,7 @@ class Painter:
             self.pointer = c_void_p()
 
     def shows(self, part: str) -> bool:
-        """Tell whether pictures show "trails", "light_levels" or "links" (infrared)."""
+        """Tell whether pictures show "trails", "light_levels", "links" (infrared) or "velocities"."""
         is_shown = c_int()
         check(self.library.pogosim_painter_shows(self.pointer, part.encode(), byref(is_shown)))
         return bool(is_shown.value)
@@ -208,4 +215,9 @@ class Painter:
         if moment.links is not None:
             data.body_links = fits("links", moment.links, LINK, (len(moment.links),))
             data.body_link_count = len(moment.links)
+        if moment.velocities is not None:
+            data.velocity_mm_s = fits("velocities", moment.velocities, np.float32, (self.objects, 2))
+        if moment.heat is not None:
+            data.heat = fits("heat", moment.heat, np.float32, (self.objects,))
+            data.heat_low, data.heat_high = moment.heat_span
         return data

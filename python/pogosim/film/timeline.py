@@ -80,6 +80,22 @@ class Timeline:
             place = np.where(outside, self.low_mm + (place - self.low_mm) % (self.high_mm - self.low_mm), place)
         return now, place, heading + share * np.nan_to_num(turn)
 
+    def velocities_at(self, time_s: float) -> Floats:
+        """Return how the m objects of poses_at() have moved since the record before, shape (m, 2), mm/s.
+
+        In the first record, how they move until the next one; zero where there is only one.
+        """
+        index = self.index_at(time_s)
+        there = self.known[index] >= 0
+        if len(self.times_s) < 2:
+            return np.zeros((int(there.sum()), 2))
+        last = max(index, 1)
+        start, end = self.known[last - 1][there], self.known[last][there]
+        start = np.where(start >= 0, start, end)  # those that came with this record
+        place = self.position[start]
+        way = between(place, self.position[end], 1.0, self.high_mm - self.low_mm, self.is_periodic) - place
+        return np.asarray(way / (self.times_s[last] - self.times_s[last - 1]))
+
     @cached_property
     def position(self) -> Floats:
         """Positions of all rows, shape (rows, 2), mm."""

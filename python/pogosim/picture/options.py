@@ -7,12 +7,16 @@ import os
 from collections.abc import Callable
 
 from pogosim.command.parser import complain, warnings_told
-from pogosim.errors import AmbiguousStepsWarning, ToolError
+from pogosim.errors import AmbiguousStepsWarning, MissingColumnWarning, ToolError
 
 
 def add_what_to_draw(parser: argparse.ArgumentParser) -> None:
     """Add the options of all commands that draw a data file."""
-    parser.add_argument("--color-by", metavar="COLUMN", help="colours show the values of this column (LEDs)")
+    parser.add_argument(
+        "--color-by",
+        metavar="COLUMN",
+        help="colours show the values of this column (view.color_by of the run, or LEDs)",
+    )
     parser.add_argument("--links", action="store_true", help="join robots near enough to hear each other")
     parser.add_argument("--run", type=int, metavar="N", help="of several runs, the one with this number (the first)")
     parser.add_argument(
@@ -32,7 +36,7 @@ def cannot_read(data: str, error: OSError) -> str:
 def report(prog: str, data: str, output: str, make: Callable[[], None]) -> int:
     """Make an output; returns the exit code: 0, or 2 after a line that says why it could not be made."""
     try:
-        with warnings_told(prog, AmbiguousStepsWarning):
+        with warnings_told(prog, AmbiguousStepsWarning, MissingColumnWarning):
             make()
     except ToolError as error:
         return complain(prog, error)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from pogosim.arguments import Arguments
 from pogosim.defaults import COMMUNICATION_RADIUS_MM, POGOBOT_RADIUS_MM
 from pogosim.deferred import pandas as pd
-from pogosim.errors import PictureError
+from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.far_away import is_near
 from pogosim.object_categories import UnknownCategoriesError, kinds_of, last_kinds, with_categories
 from pogosim.object_facts import entries_of
@@ -148,7 +148,8 @@ def read_recording(
     Args:
         path: Feather file, of a run or of a batch of runs.
         run: Number in its column run. None: the first.
-        color_by: Column whose values colour the objects, or "speed" (mm/s). None: by their LEDs.
+        color_by: Column whose values colour the objects, or "speed" (mm/s); "led_rgb" or "": their LEDs. None: what
+            view.color_by of its configuration says.
         combination: Combination of the options of a batch, from 0 on. None: the first.
 
     Raises:
@@ -166,9 +167,11 @@ def read_recording(
     several = numbers_runs(rows, metadata)  # whose links the file does not tell apart
     rows, polygons, left_out = one_run(rows, metadata, run, combination)
     rows = rows[is_near(rows)]
-    if color_by not in (None, SPEED, "led_rgb"):
-        checked_column(rows, str(color_by))
     configuration = configuration_of(metadata)
+    if color_by is None:
+        color_by = colours_of_view(configuration, rows)
+    if color_by not in ("", SPEED, "led_rgb"):
+        checked_column(rows, color_by)
     entries = entries_of(metadata)
     kinds = kinds_in(entries)
     rows = with_categories(rows, metadata)
@@ -202,6 +205,16 @@ def read_recording(
         colouring=colouring,
     )
     return Recording(last, rows[is_wall], left_out, configuration)
+
+
+def colours_of_view(configuration: Mapping[str, Any], rows: pd.DataFrame) -> str:
+    """Return the column that colours objects by the section `view` of a configuration; "": LEDs."""
+    view = configuration.get("view")
+    name = view.get("color_by") if isinstance(view, dict) else None
+    if not isinstance(name, str) or name in ("", SPEED) or list(rows.columns).count(name) == 1:
+        return name if isinstance(name, str) else ""
+    warnings.warn(f"view.color_by: the data file has no column {name}", MissingColumnWarning, stacklevel=3)
+    return ""
 
 
 def object_numbers(rows: pd.DataFrame) -> dict[tuple[str, int], int]:
@@ -245,14 +258,12 @@ def rows_of_kinds(rows: pd.DataFrame, is_wanted: Sequence[bool]) -> npt.NDArray[
     return np.asarray(np.array(is_wanted, dtype=bool)[rows[KIND].to_numpy()])
 
 
-def coloured(
-    rows: pd.DataFrame, kinds: list[Kind], color_by: str | None = None
-) -> tuple[pd.DataFrame, Colouring | None]:
+def coloured(rows: pd.DataFrame, kinds: list[Kind], color_by: str = "") -> tuple[pd.DataFrame, Colouring | None]:
     """Add the colours of a column, by default LEDs, or of categories if the file does not have those."""
     colouring: Colouring | None = None
-    if color_by not in (None, "led_rgb"):
-        colouring = colouring_of(rows, str(color_by))
-        colours = colouring.colours(rows[str(color_by)])
+    if color_by not in ("", "led_rgb"):
+        colouring = colouring_of(rows, color_by)
+        colours = colouring.colours(rows[color_by])
     elif "led_rgb" in rows:
         colours = led_colours(rows["led_rgb"].to_numpy())
         colours[~rows_of_kinds(rows, [kind.runs_program for kind in kinds])] = NO_LED
