@@ -237,15 +237,15 @@ void begin_rescue_of_run(UserFailure const& failure) {
 }
 
 ProcessRun::ProcessRun(CrashHandler& handler) {
-    enter_stage(RunStage::running);
     handler.state_->thread = pthread_self();
     process_run = handler.state_.get();
+    enter_stage(RunStage::running);  // from now on, signals are for the run
 }
 
 ProcessRun::~ProcessRun() {
     keep_data_file_note(process_run.load()->data_file);
+    enter_stage(RunStage::finished);  // before, or a signal would find neither a run nor its end
     process_run = nullptr;
-    enter_stage(RunStage::finished);
 }
 
 double monotonic_s() {

@@ -207,8 +207,10 @@ Canvas::Canvas(PictureSize size) {
 }
 
 void Canvas::resize(PictureSize size) {
-    size_ = {std::max(size.width_px, 0), std::max(size.height_px, 0)};
-    pixels_.assign(static_cast<std::size_t>(size_.width_px) * static_cast<std::size_t>(size_.height_px), 0xFF000000U);
+    PictureSize const wanted{std::max(size.width_px, 0), std::max(size.height_px, 0)};
+    size_ = {0, 0};  // until there is memory for it
+    pixels_.assign(static_cast<std::size_t>(wanted.width_px) * static_cast<std::size_t>(wanted.height_px), 0xFF000000U);
+    size_ = wanted;
     clip_ = bounds();
 }
 

@@ -29,6 +29,7 @@ from pogosim.film.making import frame_times
 from pogosim.film.moments import Moments
 from pogosim.film.painter import Painter, Stage
 from pogosim.film.timeline import Timeline, timeline_of
+from pogosim.picture.colouring import Scale
 from pogosim.picture.swarm import OBJECT, RGB, Recording, read_recording
 from pogosim.utils import load_dataframe
 from recordings import SIDE_MM, walkers, write
@@ -735,3 +736,24 @@ def test_heat_map_of_what_the_file_does_not_have_is_told(tmp_path: Path) -> None
         frames_of(read_recording(path), heat_map="hoard")
     with pytest.raises(PictureError, match=r"column state holds no numbers \(heat_map\)"):
         frames_of(read_recording(path), heat_map="state")
+
+
+def test_robot_to_follow_has_to_be_there(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.feather", walkers(3))
+    assert frames_of(read_recording(path), follow=2).moments.painter.objects == 3
+    with pytest.raises(PictureError, match="it has no robot 3 to follow"):
+        frames_of(read_recording(path), follow=3)
+
+
+@pytest.mark.parametrize("values", [[1.7e308, -1.7e308, 1.0], [np.nan, np.inf, -1e308], [np.nan] * 3, [4e38, 1.0, 2.0]])
+def test_values_that_sums_of_would_overflow_do_not_count(tmp_path: Path, values: list[float]) -> None:
+    rows = walkers(3, 5).assign(level=np.tile(values, 5))
+    path = write(tmp_path / "a.feather", rows)
+    frames = frames_of(read_recording(path, color_by="level"), heat_map="level")
+    assert pixels(frames, 1.0).any()
+    scale = frames.recording.last.colouring
+    assert isinstance(scale, Scale)
+    known = [value for value in values if abs(value) < 3e38]
+    assert (scale.low, scale.high) == ((min(known), max(known)) if known else (0.0, 0.0))
+    for ending in ("html", "gif"):
+        assert main([str(path), "-o", str(tmp_path / f"film.{ending}"), "--color-by", "level", "--tail", "1e300"]) == 0

@@ -27,6 +27,7 @@ from pogosim.analysis.neighbourhood import degrees
 from pogosim.analysis.order import polar_order
 from pogosim.analysis.trajectories import Trajectories
 from pogosim.run_columns import RETRY, tells_runs_apart
+from pogosim.usable_numbers import usable
 
 # Columns that the simulator writes, and that are no quantities of their own.
 OF_THE_SIMULATOR = (
@@ -70,7 +71,7 @@ def quantities_of(run: Trajectories) -> Iterator[Quantity]:
     The quantities are: `displacement`, the distance from a robot's first position, without jumps at periodic borders
     (mm); `speed` since the previous row (mm/s); `neighbours`, robots within reach; all three as means over robots.
     `polar order` of the directions of motion, 0 to 1. And for each column of the program that holds numbers or truth
-    values, `column NAME`: the mean over robots, for truth values the share of true ones. Columns without a finite
+    values, `column NAME`: the mean over robots, for truth values the share of true ones. Columns without a usable
     value are left out.
     """
     yield of_robots("displacement", "mm", np.sqrt(squared_displacement(run)))
@@ -125,11 +126,11 @@ def program_columns(run: Trajectories) -> list[str]:
 
 
 def numbers_in(values: pd.Series[Any]) -> npt.NDArray[np.float64] | None:
-    """Return a column of numbers or truth values as numbers, NaN where it is empty; None of other columns."""
+    """Return a column of numbers or truth values as usable numbers, else NaN; None of other columns."""
     types = pd.api.types
     is_truth = types.is_bool_dtype(values) or pd.api.types.infer_dtype(values, skipna=True) == "boolean"
     if is_truth:
         return np.asarray(values.astype("boolean").to_numpy(dtype=float, na_value=np.nan))
     if types.is_integer_dtype(values) or types.is_float_dtype(values):
-        return np.asarray(values.to_numpy(dtype=float, na_value=np.nan))
+        return usable(values.to_numpy(dtype=float, na_value=np.nan))
     return None

@@ -131,6 +131,11 @@ class Moments:
         part_counts, self.part_order = self.parts_of(self.dots)
         with_parts = set(self.kinds[part_counts[: len(self.kinds)] > 0].tolist())
 
+        runs_program = np.array([kind.runs_program for kind in swarm.kinds])[self.kinds]
+        follow = options.get("follow")
+        if isinstance(follow, int) and follow not in ids[order][runs_program]:
+            raise PictureError(f"it has no robot {follow} to follow")
+
         cells = cells_of(recording.configuration)
         self.light_places = self.centres(cells)
         self.light_key: object = None

@@ -35,7 +35,7 @@ class TrailOfSeconds:
         """
         self.line, self.rgb, self.tail_s = line, rgb, tail_s
         period_s = float(np.median(np.diff(line.times_s))) if len(line.times_s) > 1 else tail_s
-        steps = tail_s / period_s
+        steps = min(tail_s / period_s, float(len(line.times_s)))
         stride = max(int(np.ceil(steps / (POINTS - 2))), 1)
         self.records = np.arange(0, len(line.times_s), stride)  # the same at each time: a trail keeps its shape
         self.fading = int(np.ceil(steps / stride)) + 1

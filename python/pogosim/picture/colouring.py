@@ -19,6 +19,7 @@ from pogosim.nearest_name import nearest_name
 from pogosim.picture.palette import NO_LED
 from pogosim.picture.speed import SPEED
 from pogosim.shapes import Floats
+from pogosim.usable_numbers import usable
 
 MAX_LABELS = 20  # in a legend
 ANGLES = ("angle",)
@@ -73,8 +74,8 @@ def holds_numbers(values: pd.Series[Any]) -> bool:
 
 
 def numbers_of(values: pd.Series[Any]) -> Floats:
-    """Values of a column of numbers, NaN where there is none. Shape (n,)."""
-    return np.asarray(values.to_numpy(dtype=float, na_value=np.nan))
+    """Usable values of a column of numbers, NaN where there is none. Shape (n,)."""
+    return usable(values.to_numpy(dtype=float, na_value=np.nan))
 
 
 def labels_of(values: pd.Series[Any]) -> list[str]:

@@ -1,0 +1,17 @@
+"""Which values of columns count: with others, sums and colours would overflow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+# The largest that the window, whose values have 32 bits, can show. Squares of it have room in 64 bits.
+LARGEST = float(np.finfo(np.float32).max)
+
+
+def usable(values: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Return numbers with NaN in place of those that are infinite or beyond 3.4e38; same shape."""
+    numbers = np.asarray(values, dtype=float)
+    return np.where(np.abs(numbers) <= LARGEST, numbers, np.nan)
