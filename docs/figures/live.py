@@ -44,7 +44,7 @@ def screenshot(simulation: Simulation) -> bytes:
         page = browser.new_page(viewport={"width": 1200, "height": 780})
         page.goto(served.address)
         wait(page, "Boolean(live.view)")
-        page.evaluate(f"live.view.select({SELECTED}); live.view.setSwitch('trails', true)")
+        page.evaluate(f"live.view.select({SELECTED}); live.view.switches.set('trails', true)")
         page.select_option("#colour", "messages_received")
         while simulation.time < SEEN_S:
             simulation.step(10)

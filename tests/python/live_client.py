@@ -23,7 +23,8 @@ class Picture:
     number: int
     poses: npt.NDArray[np.float64]  # x, y (mm), heading (rad)
     leds: npt.NDArray[np.int64]
-    column: npt.NDArray[np.float32] | None
+    column: npt.NDArray[np.float32] | None  # for colours
+    heat: npt.NDArray[np.float32] | None  # for a heat map
     size: int  # bytes
 
 
@@ -50,9 +51,9 @@ class Client:
             self.head = message["head"]
             count = len(self.head["objects"])
             parts = self.head["membranes"]["dots"] if self.head["membranes"] else 0
-            shapes = ((count, 3), (count, 2), (parts, 2), (count, 2))
+            shapes = ((count, 3), (count, 2), (parts, 2), (count, 2), (count, 2))
             self._tables = [np.zeros(shape, np.uint16) for shape in shapes]
-            self._column = 0
+            self._columns = (0, 0)
             self.pictures = []  # a new list, for what has been seen is never forgotten while it is read
         elif message["kind"] == "status":
             self.status = message
@@ -63,18 +64,23 @@ class Client:
         if message[0] == 2:
             self.light = np.frombuffer(message, np.uint8)[2:]
             return
-        kind, column, number, time_s = struct.unpack_from("<HHId", message)
+        kind, *columns, number, time_s = struct.unpack_from("<HHHId", message)
         assert kind == 1
-        if column != self._column:
-            self._tables[3][:] = 0
-        self._column = column
-        at = 16
-        for table in self._tables[: 4 if column else 3]:
+        poses, leds, parts, *values = self._tables
+        for column, before, table in zip(columns, self._columns, values, strict=True):
+            if column != before:
+                table[:] = 0
+        self._columns = tuple(columns)
+        at = 18
+        told = [table for column, table in zip(columns, values, strict=True) if column]
+        for table in (poses, leds, parts, *told):
             at = changed(table, message, at)
         assert at == len(message)
-        poses, leds, _, values = self._tables
-        own = halves(values).view(np.float32) if column else None
-        self.pictures.append(Picture(time_s, number, self._decoded(poses), halves(leds).astype(int), own, len(message)))
+        own, heat = (
+            halves(table).view(np.float32) if column else None for column, table in zip(columns, values, strict=True)
+        )
+        codes = halves(leds).astype(int)
+        self.pictures.append(Picture(time_s, number, self._decoded(poses), codes, own, heat, len(message)))
 
     def _decoded(self, codes: npt.NDArray[np.uint16]) -> npt.NDArray[np.float64]:
         (left, top), (right, bottom) = self.head["poseBox"]

@@ -11,14 +11,11 @@ from running import ROOT
 
 @pytest.fixture(scope="module")
 def weights_and_limit() -> list[float]:
-    """Weights of red, green and blue in painter.js, and the limit."""
-    script = (ROOT / "python" / "pogosim" / "view" / "painter.js").read_text()
-    (formula,) = re.findall(r"brightness\.set\(colour, (.*)\);", script)
-    factor = r"([\d.]+) \* "
-    channels = [r"\(value >> 16\)", r"\(\(value >> 8\) & 255\)", r"\(value & 255\)"]
-    match = re.fullmatch(r" \+ ".join(factor + channel for channel in channels) + r" > ([\d.]+)", formula)
-    assert match, formula
-    return [float(number) for number in match.groups()]
+    """Weights of red, green and blue in colours.js, and the limit."""
+    script = (ROOT / "python" / "pogosim" / "view" / "colours.js").read_text()
+    (weights,) = re.findall(r"const luma = .* => ([\d.]+) \* red \+ ([\d.]+) \* green \+ ([\d.]+) \* blue;", script)
+    (limit,) = re.findall(r"luma\(channelsOf\(colour\)\) > ([\d.]+)", script)
+    return [*map(float, weights), float(limit)]
 
 
 def test_colours_are_as_bright_as_in_the_script(weights_and_limit: list[float]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import subprocess
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from chromium import CHROMIUM
 from live_client import wait_for
 from PIL import Image
 from playwright.sync_api import Browser, Page
+from pogosim.picture.palette import PALETTE
 from pogosim.watch.live import LiveRun
 from pogosim.watch.page import watch_page
 from pogosim.watch.serving import served_in_thread
@@ -74,13 +76,13 @@ class Shown:
         return np.asarray(Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")).astype(int)
 
 
-@pytest.fixture
-def shown(browser: Browser, sim: pogosim.Simulation) -> Iterator[Shown]:
-    """A page that steers a run; every message of the browser is an error of the test."""
+@contextlib.contextmanager
+def shown_page(browser: Browser, simulation: pogosim.Simulation) -> Iterator[Shown]:
+    """Open a page that steers a run; every message of the browser is an error of the test."""
     from pogosim.command.watch import listening
     from pogosim.watch.server import WatchServer
 
-    live = LiveRun(sim, one_steers=True)
+    live = LiveRun(simulation, one_steers=True)
     server = WatchServer(live, watch_page("a run"))
     with listening("127.0.0.1", 0) as own, served_in_thread(server, own):
         page = browser.new_page(viewport={"width": 1000, "height": 740}, accept_downloads=True)
@@ -90,10 +92,17 @@ def shown(browser: Browser, sim: pogosim.Simulation) -> Iterator[Shown]:
         page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(f"http://127.0.0.1:{own.getsockname()[1]}/?token={server.tokens.steer}")
         wait_for(lambda: page.evaluate("Boolean(live.view)"))
-        yield Shown(page, sim, live)
+        yield Shown(page, simulation, live)
         page.close()
     live.end()
     assert said == []
+
+
+@pytest.fixture
+def shown(browser: Browser, sim: pogosim.Simulation) -> Iterator[Shown]:
+    """The page of the run."""
+    with shown_page(browser, sim) as page:
+        yield page
 
 
 def test_page_draws_robots_where_they_are_in_the_colour_of_their_leds(shown: Shown) -> None:
@@ -269,6 +278,11 @@ def test_random_keys_and_clicks_leave_the_page_alive(shown: Shown) -> None:
         "m",
         "t",
         "l",
+        "v",
+        "d",
+        "c",
+        "F2",
+        "F9",
         "f",
         "0",
         "+",
@@ -298,3 +312,28 @@ def test_random_keys_and_clicks_leave_the_page_alive(shown: Shown) -> None:
     shown.wait("live.view?.state.time === 0")
     shown.live.play()
     shown.wait("live.view?.state.time > 0.1")
+
+
+def test_page_begins_with_the_view_of_the_configuration(browser: Browser, hosted: Path, tmp_path: Path) -> None:
+    view = {"theme": "light", "labels": True, "color_by": "light", "heat_map": "speed", "follow": 4, "zoom": 2.0}
+    scene = write_scene(tmp_path, {"simulation_time": 60.0, "objects.robots.nb": 12, "view": view})
+    with pogosim.Simulation(hosted, scene) as simulation, shown_page(browser, simulation) as shown:
+        simulation.step(20)
+        shown.wait(f"live.view.state.time === {simulation.time}")
+        chosen = shown.value("live.view.chosen()")
+        assert {key: chosen[key] for key in view if key != "zoom"} == {key: view[key] for key in view if key != "zoom"}
+        shown.wait("document.getElementById('key').textContent.includes('speed, mean')")
+        index = "live.run.columns.find(({name}) => name === 'NAME').value"
+        speeds = shown.value(
+            f"Array.from({{length: 12}}, (_, i) => {index.replace('NAME', 'speed')}(i, live.view.state.index))"
+        )
+        np.testing.assert_allclose(speeds, np.hypot(*simulation.velocities.T), rtol=1e-5)
+        width, height = shown.value("[live.view.camera.canvas.clientWidth, live.view.camera.canvas.clientHeight]")
+        assert shown.screen(4) == pytest.approx((width / 2, height / 2), abs=0.5)
+        floor = [int(PALETTE["light"]["floor"][i : i + 2], 16) for i in (1, 3, 5)]
+        assert (shown.picture() == floor).all(axis=-1).mean() > 0.01
+        shown.page.keyboard.press("v")
+        shown.page.click("#reset")
+        shown.wait("live.view?.state.time === 0")
+        again = shown.value("live.view.chosen()")
+        assert again == {**chosen, "velocities": True}

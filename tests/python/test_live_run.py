@@ -128,7 +128,7 @@ def test_played_run_has_the_bytes_of_one_without_viewers(hosted: Path, scene: Pa
         live = LiveRun(seen)
         watchers = [Watcher(live) for _ in range(3)]
         watchers[0].do("select", object=2)
-        watchers[1].do("column", name="age")
+        watchers[1].do("columns", color_by="age", heat_map=None)
         watchers[0].do("speed", value=None)
         watchers[0].do("play")
         wait_for(lambda: seen.is_over)
@@ -159,14 +159,19 @@ def test_column_comes_with_frames(live: LiveRun, sim: pogosim.Simulation) -> Non
     assert {"light", "speed", "messages_sent", "age", "gain", "steps_of_all"} <= set(watcher.head["columnNames"])
     assert "name" not in watcher.head["columnNames"]
     for name in ("age", "light", "age"):
-        watcher.do("column", name=name)
+        watcher.do("columns", color_by=name, heat_map=None)
         sim.step(7)
         wait_for(lambda: watcher.last.time_s == sim.time and watcher.last.column is not None)
         expected = sim.user_data["age"] if name == "age" else sim.light_levels
         wait_for(functools.partial(watcher.has_column, expected.astype(np.float32)))
-    watcher.do("column", name=None)
+    watcher.do("columns", color_by="age", heat_map="light")
+    wait_for(lambda: watcher.last.heat is not None)
+    heat = np.asarray(watcher.last.heat)
+    np.testing.assert_array_equal(heat[:12], sim.light_levels.astype(np.float32))
+    assert watcher.has_column(sim.user_data["age"].astype(np.float32))
+    watcher.do("columns", color_by=None, heat_map=None)
     wait_for(lambda: watcher.last.column is None)
-    watcher.do("column", name="nothing")
+    watcher.do("columns", color_by="nothing", heat_map=None)
     assert "'nothing'" in watcher.refusal()
 
 
@@ -376,7 +381,7 @@ def test_threads_of_the_user_and_the_view_take_turns(live: LiveRun, sim: pogosim
 GOOD: dict[str, dict[str, Any]] = {
     "shown": {"frame": 3},
     "select": {"object": -1},
-    "column": {"name": None},
+    "columns": {"color_by": None, "heat_map": None},
     "steer": {},
     "play": {},
     "pause": {},

@@ -285,7 +285,7 @@ def test_data_file_has_the_bytes_of_a_run_without_viewers(
     with serving(tmp_path, *arguments, "--pause") as served:
         viewers = [served.view(), served.view(served.look)]
         viewers[0].do("select", object=1)
-        viewers[1].do("column", name="age")
+        viewers[1].do("columns", color_by="age", heat_map=None)
         viewers[0].do("play")
         wait_for(lambda: viewers[1].status["over"])
         assert "data.feather is complete" in served.end(number)

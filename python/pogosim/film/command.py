@@ -51,7 +51,7 @@ def check_number_of_runs(options: argparse.Namespace) -> None:
         return
     if count > 1:
         raise PictureError(f"a page shows one run, not {count}: make a film ({', '.join(FORMATS)}), or a page of each")
-    for name in ("labels", "title", "subtitle", "credits", "view"):
+    for name in ("labels", "title", "subtitle", "credits"):
         if getattr(options, name):
             raise PictureError(f"--{name} is for films ({', '.join(FORMATS)}); {options.output} is a page")
 
@@ -77,7 +77,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim film") -> 
         action="append",
         default=[],
         metavar="KEY=VALUE",
-        help="what films show, as in the section `view` of a configuration (as that of the run)",
+        help="what is shown, of a page at its start, as in the section `view` of a configuration (as that of the run)",
     )
     parser.add_argument(
         "--labels", nargs="+", metavar="TEXT", help="what stands above each run (what tells them apart)"

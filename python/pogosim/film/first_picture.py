@@ -12,9 +12,9 @@ import numpy.typing as npt
 from pogosim.film.packing import hex_colour
 from pogosim.picture.body_links import PlacedLinks
 from pogosim.picture.images import Box, lines_between, seen_places
-from pogosim.picture.palette import PALETTE, tension_colours
+from pogosim.picture.palette import palette_of, tension_colours
 
-BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in painter.js
+BRIGHT = 64.0  # luminance, 0 to 255, from which on headings are dark; as in colours.js
 
 
 def number(value: float) -> str:
@@ -50,9 +50,9 @@ def heading(category: dict[str, Any], x: float, y: float, angle: float) -> str:
     return f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
 
 
-def link_paths(links: PlacedLinks, box: Box | None) -> list[str]:
+def link_paths(links: PlacedLinks, box: Box | None, palette: dict[str, Any]) -> list[str]:
     """Return links between bodies as lines and dots, with an edge each."""
-    colours = [hex_colour(colour) for colour in tension_colours(links.load)]
+    colours = [hex_colour(colour) for colour in tension_colours(links.load, palette)]
     line = 'stroke-linecap="round" vector-effect="non-scaling-stroke"'
     paths = []
     for kind, width in (("rod", 3.0), ("spring", 2.0), ("hinge", 7.2)):
@@ -60,7 +60,7 @@ def link_paths(links: PlacedLinks, box: Box | None) -> list[str]:
         segments, which = lines_between(links.start[of_kind], links.end[of_kind], box)
         for (start, end), i in zip(segments, of_kind[which], strict=True):
             path = f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
-            for colour, extra in ((PALETTE["edge"], 1.2), (colours[i], 0.0)):
+            for colour, extra in ((palette["edge"], 1.2), (colours[i], 0.0)):
                 paths.append(f'<path d="{path}" stroke="{colour}" stroke-width="{width + extra:g}" {line}/>')
     return paths
 
@@ -79,6 +79,7 @@ def first_picture(
         colours: Colours of each object.
         links: Links between bodies.
     """
+    palette = palette_of(head["view"])
     (left, top), (right, bottom) = head["low"], head["high"]
     box = (np.array(head["low"]), np.array(head["high"])) if head["periodic"] else None
     floor = "".join(path_of(polygon) for polygon in head["polygons"])
@@ -88,7 +89,7 @@ def first_picture(
         category = head["categories"][number_of_category]
         if not (math.isfinite(x) and math.isfinite(y)) or category["membrane"]:
             continue
-        ink = PALETTE["edge"] if is_bright(colour) else PALETTE["paper"]
+        ink = palette["edge"] if is_bright(colour) else palette["paper"]
         for px, py in seen_places(np.array([[x, y]]), category["radius"], box)[1]:
             shapes.setdefault(colour, []).append(body(category, px, py, angle))
             if math.isfinite(angle):
@@ -97,15 +98,15 @@ def first_picture(
     parts = [
         f'<svg id="first" aria-hidden="true" viewBox="{number(left)} {number(top)} {number(right - left)} '
         f'{number(bottom - top)}" stroke-linejoin="round">',
-        f'<path d="{floor}" fill="{PALETTE["floor"]}" fill-rule="evenodd"/>',
+        f'<path d="{floor}" fill="{palette["floor"]}" fill-rule="evenodd"/>',
         f'<clipPath id="inside"><path d="{floor}" clip-rule="evenodd"/></clipPath><g clip-path="url(#inside)">'
         if box
         else "<g>",
-        *(f'<g fill="{colour}" stroke="{PALETTE["edge"]}">{"".join(own)}</g>' for colour, own in shapes.items()),
-        *(link_paths(links, box) if links else ()),
+        *(f'<g fill="{colour}" stroke="{palette["edge"]}">{"".join(own)}</g>' for colour, own in shapes.items()),
+        *(link_paths(links, box, palette) if links else ()),
         *(f'<path d="{"".join(own)}" stroke="{ink}" stroke-width="2" {line}/>' for ink, own in headings.items()),
         "</g>",
-        f'<path d="{floor}" fill="none" stroke="{PALETTE["wall"]}" stroke-width="3" {line}/>',
+        f'<path d="{floor}" fill="none" stroke="{palette["wall"]}" stroke-width="3" {line}/>',
         "</svg>",
     ]
     return "".join(parts)

@@ -8,7 +8,6 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import repeat
 from pathlib import Path
-from typing import Any
 
 from pogosim.command.parser import warn
 from pogosim.errors import PictureError
@@ -17,6 +16,7 @@ from pogosim.film.cards import CARD_S, card
 from pogosim.film.encoder import PAGE, encode
 from pogosim.film.grid import Grid, labels_of
 from pogosim.film.replay import write_replay
+from pogosim.film.shown import asked_for
 from pogosim.fonts import without_tex
 from pogosim.lines import counted, say
 from pogosim.picture.loading import load, sayings
@@ -89,21 +89,13 @@ def make_film(path: Path, options: argparse.Namespace, prog: str) -> None:
         say(f"{options.output}: {told}")
 
 
-def shown(options: argparse.Namespace) -> dict[str, Any]:
-    """Return what the command line says of what pictures show, as keys of the section `view`."""
-    keys: dict[str, Any] = {"links": "below"} if options.links else {}
-    if options.tail is not None:
-        keys["trails"] = True
-    return {**keys, **dict(options.view)}
-
-
 def encode_film(
     recordings: Sequence[Recording], path: Path, times_s: Sequence[float], options: argparse.Namespace
 ) -> str:
     """Make a film for players; returns what is said of it."""
     labels = options.labels or (labels_of(options.data, recordings) if len(recordings) > 1 else None)
     is_even = path.suffix.lower() != ".gif"
-    grid = Grid(recordings, options.size, shown(options), options.tail, labels, is_even)
+    grid = Grid(recordings, options.size, asked_for(options), options.tail, labels, is_even)
     of_card = max(round(CARD_S * options.fps), 1)
     before = of_card if options.title or options.subtitle else 0
     behind = of_card if options.credits else 0

@@ -14,6 +14,7 @@ import pandas as pd
 from pogosim.arguments import number
 from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.film.painter import HEARD, LINK, LINK_KINDS, Moment, Numbers, Painter, Stage, Trails
+from pogosim.film.shown import shown_by
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.film.trails import Trail, TrailOfPlaces, TrailOfSeconds
 from pogosim.periodic import minimum_image
@@ -75,17 +76,6 @@ def cells_of(configuration: Mapping[str, Any]) -> tuple[int, int]:
     """Return columns and rows of the map of light."""
     columns, rows = (number(configuration.get(f"light_map_nb_bin_{axis}"), LIGHT_CELLS) for axis in "xy")
     return max(int(columns), 1), max(int(rows), 1)
-
-
-def shown_by(configuration: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a configuration that say what pictures show, but for those that stand for several values."""
-
-    def plain(keys: Mapping[str, Any]) -> dict[str, Any]:
-        return {key: value for key, value in keys.items() if isinstance(value, (bool, int, float, str))}
-
-    view = configuration.get("view")
-    older = {key: value for key, value in configuration.items() if key.startswith("show_")}
-    return {**plain(older), "view": plain(view) if isinstance(view, dict) else {}}
 
 
 def packed(colours: Floats) -> Numbers:

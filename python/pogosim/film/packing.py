@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from pogosim.deferred import pandas as pd
 from pogosim.errors import PictureError
-from pogosim.picture.colouring import SHADES, Scale, holds_numbers, label_of, numbers_of, scale_of, swatches_of
+from pogosim.picture.colouring import Scale, holds_numbers, label_of, numbers_of, scale_of, swatches_of
 from pogosim.shapes import Floats
 
 MISSING = 65535  # the code of no value
@@ -112,8 +112,3 @@ def plain_number(value: float, values: pd.Series[Any]) -> float | int:
     if float(value).is_integer() and abs(value) < 2**53:
         return int(value)
     return float(str(np.float32(value))) if values.dtype == np.float32 else float(value)
-
-
-def shades_of(scale: Scale) -> list[str]:
-    """Colours of a scale, from low to high."""
-    return [hex_colour(scale.shades[i]) for i in range(SHADES)]

@@ -17,6 +17,8 @@ function interfaceOf({run, player, state, painter, ...view}) {
         get frames() { return state.frames; },
         get selected() { return state.selected; },
         get hovered() { return state.hovered; },
+        get chosen() { return view.chosen(); },
+        get arrows() { return painter.velocities().map(({x, y, dx, dy}) => ({from: [x, y], to: [x + dx, y + dy]})); },
         get colouring() { return state.colouring.name; },
         get columns() { return run.columns.map((column) => column.name); },
         get links() { return painter.linkedPairs().map(({from, to}) => [from, to]); },

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +15,20 @@ import pandas as pd
 
 from pogosim.errors import PictureError
 from pogosim.film.first_picture import first_picture
-from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised, shades_of
+from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised
+from pogosim.film.shown import asked_for, check_view
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.lines import counted
 from pogosim.outputs import partial_output
 from pogosim.picture import layers
 from pogosim.picture.body_links import ARENA, LEAST_TENSION_N, N_PER_MM, PlacedLinks, placed_links
-from pogosim.picture.colouring import scale_of
 from pogosim.picture.figure import notes, title
 from pogosim.picture.links import box_of
-from pogosim.picture.palette import PALETTE, led_colours
+from pogosim.picture.palette import PALETTE, led_colours, palette_of
 from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
 from pogosim.view import assets
+from pogosim.view.beginning import view_of
 from pogosim.view.kinds import category_data
 
 FOLDER = Path(__file__).parent
@@ -48,7 +50,7 @@ def write_replay(
         path: As real_output() returns it.
         span_s: First and last time, s.
         data: The file of the run, for the title.
-        options: Options of the command: color_by, links, speed, tail.
+        options: Options of the command: color_by, links, speed, tail, view.
 
     Returns:
         What is said of the page, and warnings.
@@ -72,14 +74,13 @@ def replay_page(
 
     Args and errors as of write_replay().
     """
-    head, data, picture, warnings = replay_data(recording, span_s)
-    head["start"] = {
-        "speed": options.speed,
-        "tail_s": options.tail or DEFAULT_TAIL_S,
-        "trails": options.tail is not None,
-        "links": options.links,
-        "colourBy": options.color_by if options.color_by != "led_rgb" else None,
-    }
+    asked = asked_for(options)
+    if options.view:
+        check_view(recording.last, asked)
+    if options.color_by is not None:
+        asked["color_by"] = options.color_by if options.color_by != "led_rgb" else ""
+    head, data, picture, warnings = replay_data(recording, span_s, asked)
+    head["start"] = {"speed": options.speed, "tail_s": options.tail or DEFAULT_TAIL_S}
     return page_of(head, data, picture, name), head, warnings
 
 
@@ -100,8 +101,16 @@ def replay_program() -> str:
     return assets.program(assets.text_of("recorded_run.js"), (FOLDER / "replay.js").read_text(encoding="utf-8"))
 
 
-def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict[str, Any], str, str, list[str]]:
-    """Return what the page knows of the run: description, tables, first picture, and what had to be left out."""
+def replay_data(
+    recording: Recording, span_s: tuple[float, float], asked: Mapping[str, Any] | None = None
+) -> tuple[dict[str, Any], str, str, list[str]]:
+    """Return what the page knows of the run: description, tables, first picture, and what had to be left out.
+
+    Args:
+        recording: The run.
+        span_s: First and last time, s.
+        asked: Keys of the section `view` that prevail over those of the configuration.
+    """
     swarm = recording.last
     swarm.check_steps()
     bodies = timeline_of(recording, swarm.rows, [OBJECT], *span_s)
@@ -120,7 +129,6 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
         "objects": object_list(bodies.objects),
         "poses": pose_tables(packer, bodies),
         "columns": columns,
-        "shades": {"number": shades_of(scale_of("", np.zeros(1))), "angle": shades_of(scale_of("angle", np.zeros(1)))},
         "lightCells": LIGHT_CELLS,
         "walls": wall_data(recording, bodies),
         "lamps": lamp_data(recording),
@@ -128,6 +136,7 @@ def replay_data(recording: Recording, span_s: tuple[float, float]) -> tuple[dict
         "membranes": membrane_tables(packer, recording, bodies, span_s),
         "bodyLinks": body_link_data(recording, bodies),
         "palette": PALETTE,
+        "view": {**view_of(recording.configuration), **(asked or {})},
     }
     poses = first_poses(bodies)
     picture = first_picture(head, poses, first_colours(head, base, codes[0]), first_links(recording, bodies, poses))
@@ -154,10 +163,14 @@ def first_links(recording: Recording, bodies: Timeline, poses: npt.NDArray[np.fl
 
 def first_colours(head: dict[str, Any], base: dict[str, Any], codes: npt.NDArray[np.uint16]) -> list[str]:
     """Colour of each object at the first time, as the page has it."""
+    shown = base["colours"]
+    if base["led"]:
+        packed = [int(label[1:], 16) for label in base["labels"]]
+        shown = [hex_colour(colour) for colour in led_colours(packed, head["view"])]
     colours = []
     for (category, _), code in zip(head["objects"], codes, strict=True):
-        is_dark = code == MISSING or (base["led"] and head["categories"][category]["passive"])
-        colours.append(str(PALETTE["no_led"] if is_dark else base["colours"][code]))
+        has_none = code == MISSING or (base["led"] and head["categories"][category]["passive"])
+        colours.append(str(palette_of(head["view"])["no_led"] if has_none else shown[code]))
     return colours
 
 
@@ -222,10 +235,9 @@ def base_colours(bodies: Timeline, recording: Recording) -> tuple[dict[str, Any]
         packed &= 0xF8F8F8
     codes, different = pd.factorize(packed, sort=True)
     labels = [f"#{colour:06x}" for colour in different]
-    shown = [hex_colour(colour) for colour in led_colours(different)] if has_leds else labels
     name = "LED" if has_leds else "category"
     name += " of the simulator" if name in rows else ""  # a column of the program has its name for itself
-    meaning = {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": shown}
+    meaning = {"name": name, "led": has_leds, "base": True, "labels": labels, "colours": None if has_leds else labels}
     return meaning, spread(codes.astype(np.uint16), bodies)
 
 
@@ -235,7 +247,7 @@ def spread(codes: np.ndarray, timeline: Timeline) -> np.ndarray:
 
 
 def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
-    """Lines of walls with a program, and their colours: pairs of number of the time and colour."""
+    """Lines of walls with a program, and their colours: pairs of number of the time and colour, None: it is off."""
     swarm = recording.last
     walls = []
     for number, kind in enumerate(swarm.kinds):
@@ -244,11 +256,11 @@ def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
         own = recording.walls[recording.walls[KIND] == number]
         changes: list[list[Any]] = []
         for time, colour in zip(own["time"], own[RGB].to_numpy(), strict=True):
-            text = hex_colour(layers.wall_colour(colour))
+            text = None if layers.is_dark_wall(colour) else hex_colour(colour)
             if not changes or changes[-1][1] != text:
                 changes.append([bodies.index_at(float(time)), text])
         lines = [np.round(line, 3).tolist() for line in layers.wall_lines(kind, swarm.polygons)]
-        walls.append({"lines": lines, "colours": changes or [[0, hex_colour(layers.wall_colour(None))]]})
+        walls.append({"lines": lines, "colours": changes or [[0, None]]})
     return walls
 
 

@@ -187,10 +187,14 @@ def wall_lines(wall: Kind, polygons: list[Floats]) -> list[Floats]:
     return [wall.shape.outline() + np.array(wall.position_mm or (0.0, 0.0))]
 
 
+def is_dark_wall(colour: Floats | None) -> bool:
+    """Tell whether the LED of a wall, of a colour of shape (3,) or none, is off."""
+    return colour is None or bool((colour == DARK_LED).all())
+
+
 def wall_colour(colour: Floats | None) -> Floats:
     """Colour in which a wall shines whose LED has a colour, shape (3,), or none."""
-    is_dark = colour is None or bool((colour == DARK_LED).all())
-    return np.array(DARK_WALL) if is_dark else np.asarray(colour)
+    return np.array(DARK_WALL) if is_dark_wall(colour) else np.asarray(colour)
 
 
 def draw_walls(axes: Axes, swarm: Swarm, floor: PathPatch) -> None:

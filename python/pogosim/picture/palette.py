@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgb
+from matplotlib.colors import rgb_to_hsv, to_rgb
 
 from pogosim.shapes import Floats
 
@@ -25,7 +26,6 @@ LAMPLIGHT = to_rgb(PALETTE["lamplight"])
 MAX_LAMPLIGHT: float = PALETTE["brightest_lamplight"]  # opacity over the floor where it is brightest
 LEDS = (PALETTE["dimmest_led"], PALETTE["brightest_led"])  # values between which brightness differs
 LEDS_ON_SCREEN = (PALETTE["dimmest_led_on_screen"], PALETTE["brightest_led_on_screen"])  # 0 to 255
-TENSION = np.array([to_rgb(PALETTE[name]) for name in ("link_pushed", "link_at_rest", "link_pulled")])
 LINK: str = PALETTE["link_by_all_emitters"]
 
 
@@ -40,16 +40,36 @@ def led_brightness(led: npt.ArrayLike) -> Floats:
     return np.where(values > 0, lit, 0.0)
 
 
-def tension_colours(load: npt.ArrayLike) -> Floats:
+def palette_of(view: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the palette in the theme of a section `view` of a configuration."""
+    return {**PALETTE, **(PALETTE["light"] if view.get("theme") == "light" else {})}
+
+
+def in_distinct_hues(colours: Floats) -> Floats:
+    """Lights of the same brightness in hues that are distinct with any colour vision. Shapes (n, 3), 0 to 1."""
+    hue, saturation, most = rgb_to_hsv(colours).T
+    hues = np.array([to_rgb(colour) for colour in PALETTE["color_blind"]["led_by_hue"]])
+    place = hue * len(hues)
+    distinct = np.stack([np.interp(place, range(len(hues) + 1), [*channel, channel[0]]) for channel in hues.T], axis=-1)
+    brightness = np.minimum(most * 255.0 / PALETTE["brightest_led_on_screen"], 1.0)
+    grey = most[:, None]
+    return np.asarray(grey + saturation[:, None] * (brightness[:, None] * distinct - grey))
+
+
+def tension_colours(load: npt.ArrayLike, palette: Mapping[str, Any] = PALETTE) -> Floats:
     """Colours of links between bodies, shape (n, 3), 0 to 1, by their load: -1 (pushed) to 1 (pulled), shape (n,)."""
     values = np.asarray(load, dtype=float)
-    return np.stack([np.interp(values, (-1.0, 0.0, 1.0), channel) for channel in TENSION.T], axis=-1)
+    colours = np.array([to_rgb(palette[name]) for name in ("link_pushed", "link_at_rest", "link_pulled")])
+    return np.stack([np.interp(values, (-1.0, 0.0, 1.0), channel) for channel in colours.T], axis=-1)
 
 
-def led_colours(led_rgb: npt.ArrayLike) -> Floats:
-    """Colours on the screen of LED values 0xRRGGBB of shape (n,). Shape (n, 3), 0 to 1."""
+def led_colours(led_rgb: npt.ArrayLike, view: Mapping[str, Any] | None = None) -> Floats:
+    """Colours on the screen of LED values 0xRRGGBB of shape (n,), in a section `view`. Shape (n, 3), 0 to 1."""
+    view = view or {}
     packed = np.asarray(led_rgb, dtype=np.int64)
     channels = np.stack([(packed >> shift) & 0xFF for shift in (16, 8, 0)], axis=-1)
     colours = led_brightness(channels)
-    colours[packed == 0] = DARK_LED
+    if view.get("palette") == "color_blind":
+        colours = in_distinct_hues(colours)
+    colours[packed == 0] = to_rgb(palette_of(view)["dark_led"])
     return colours

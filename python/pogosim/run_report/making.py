@@ -253,7 +253,11 @@ def show_run(report: Report, recording: Recording, options: argparse.Namespace) 
     times_s = shorter.recording.times_s
     span_s = float(times_s[0]), float(times_s[-1])
     begins = argparse.Namespace(
-        color_by=options.color_by, links=False, speed=options.speed or speed_for(span_s[1] - span_s[0]), tail=TAIL_S
+        color_by=options.color_by,
+        links=False,
+        speed=options.speed or speed_for(span_s[1] - span_s[0]),
+        tail=TAIL_S,
+        view=(),
     )
     name = Path(options.data).name
     report.replay, _, warned = replay_page(shorter.recording, span_s, begins, name)

@@ -12,7 +12,18 @@ from pogosim.pages import filled
 FOLDER = Path(__file__).parent
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"  # without a network
 # What every view needs, each file after those that it uses.
-COMMON = ("space.js", "tracks.js", "painter.js", "swarm_view.js")
+COMMON = (
+    "space.js",
+    "colours.js",
+    "tracks.js",
+    "light.js",
+    "heat_map.js",
+    "marks.js",
+    "painter.js",
+    "switches.js",
+    "pointers.js",
+    "swarm_view.js",
+)
 
 
 def text_of(name: str) -> str:

@@ -4,25 +4,28 @@ const LIVE_MISSING = 65535;
 const LIVE_LEVELS = 65534;
 const MOST_CELLS = 6e6;  // poses that are kept, over all times
 const FRAME = 1, LIGHT = 2;
+const COLUMN = 3;  // number of the first table of a column
 
 // The tables of a frame, which become those of the next one.
 class FrameReader {
     constructor(objects, parts) {
         const table = (rows, columns) => ({rows, columns, codes: new Uint16Array(rows * columns)});  // column by column
-        this.tables = [table(objects, 3), table(objects, 2), table(parts, 2), table(objects, 2)];
-        this.column = 0;
+        this.tables = [table(objects, 3), table(objects, 2), table(parts, 2), table(objects, 2), table(objects, 2)];
+        this.columns = [0, 0];
     }
 
-    // data: a DataView of the message. Returns {number, time, column}; the tables are those of this frame then.
+    // data: a DataView of the message. Returns {number, time, columns}; the tables are those of this frame then.
     read(data) {
-        const column = data.getUint16(2, true);
-        if (column !== this.column) this.tables[3].codes.fill(0);
-        this.column = column;
-        let at = 16;
-        this.tables.forEach((table, number) => {
-            if (number < 3 || column) at = this.change(table, data, at);
+        const columns = [data.getUint16(2, true), data.getUint16(4, true)];
+        columns.forEach((column, i) => {
+            if (column !== this.columns[i]) this.tables[COLUMN + i].codes.fill(0);
         });
-        return {number: data.getUint32(4, true), time: data.getFloat64(8, true), column};
+        this.columns = columns;
+        let at = 18;
+        this.tables.forEach((table, number) => {
+            if (number < COLUMN || columns[number - COLUMN]) at = this.change(table, data, at);
+        });
+        return {number: data.getUint32(6, true), time: data.getFloat64(10, true), columns};
     }
 
     change({rows, columns, codes}, data, at) {
@@ -72,43 +75,26 @@ class GrowingTrack extends Track {
     angle(object, index) { return this.records[index][2] ? this.records[index][2][object] : NaN; }
 }
 
-// The values of LEDs on the screen, as led_brightness() in palette.py has them.
-function ledColour(palette, packed) {
-    if (!packed) return palette.dark_led;
-    const [dimmest, brightest] = [palette.dimmest_led, palette.brightest_led];
-    const [low, high] = [palette.dimmest_led_on_screen, palette.brightest_led_on_screen];
-    const channel = (value) => {
-        const share = Math.min(Math.max((value - dimmest) / (brightest - dimmest), 0), 1);
-        return Math.round(value ? low + share * (high - low) : 0).toString(16).padStart(2, "0");
-    };
-    return `#${[packed >> 16, packed >> 8 & 255, packed & 255].map(channel).join("")}`;
-}
-
 class LiveRun {
     constructor(head) {
         this.head = head;
-        this.start = {speed: 1, trails: false, links: false, colourBy: "LED"};
+        this.start = {speed: 1, view: head.view};
         this.space = new Space(head);
         this.times = [];
         this.leds = [];
-        this.values = [];  // record by record: number of a column and its values, or null
+        this.values = [];  // record by record: values of columns, by the numbers of these
         this.track = new GrowingTrack(this.times, this.space, head.objects.length, head.poseBox);
         this.dots = head.membranes ? new GrowingTrack(this.times, this.space, head.membranes.dots, head.poseBox) : null;
         this.reader = new FrameReader(head.objects.length, head.membranes ? head.membranes.dots : 0);
         this.bodyLinks = head.bodyLinks;
         this.light = null;
         this.robot = {object: -1, values: {}};
-        this.colours = new Map();
+        this.colours = new Colours(head.palette);
         this.columns = [this.ledColumn(), ...head.columnNames.map((name, i) => this.askedColumn(name, i + 1))];
         const poses = {x: {low: head.low[0], high: head.high[0]}, y: {low: head.low[1], high: head.high[1]}};
         const names = new Set(this.columns.map((column) => column.name));
-        this.columns.push(...columnsOfPoses(head, this.track, poses).filter((column) => !names.has(column.name)));
+        this.columns.push(...columnsOfPoses(this, poses).filter((column) => !names.has(column.name)));
         this.most = Math.max(Math.floor(MOST_CELLS / (head.objects.length + 1)), 200);
-    }
-
-    colourOfLed(packed) {
-        if (!this.colours.has(packed)) this.colours.set(packed, ledColour(this.head.palette, packed));
-        return this.colours.get(packed);
     }
 
     ledColumn() {
@@ -117,22 +103,22 @@ class LiveRun {
             name: "LED", led: true, base: true, isListed: true,
             value: (object, index) => value(object, index) > 0xffffff ? null
                 : `#${value(object, index).toString(16).padStart(6, "0")}`,
-            colour: (object, index) => this.colourOfLed(value(object, index)),
+            colour: (object, index) => this.colours.ofLed(value(object, index)),
         };
     }
 
     // A column whose values come with frames when it is asked for; its colours go as far as its values did.
     askedColumn(name, number) {
         const valueAt = (object, index) => {
-            const record = this.values[index];
-            return record && record.number === number ? record.values[object] : NaN;
+            const values = this.values[index].get(number);
+            return values ? values[object] : NaN;
         };
-        return computedColumn(this.head, name, valueAt, Infinity, -Infinity, name === "angle" ? "angle" : "number");
+        return computedColumn(this.colours, name, valueAt, Infinity, -Infinity, name === "angle" ? "angle" : "number");
     }
 
     // Takes a frame in; returns its number.
     add(data) {
-        const {number, time, column} = this.reader.read(data);
+        const {number, time, columns} = this.reader.read(data);
         if (time < this.times[this.times.length - 1]) this.forget(0);  // the run went back to a state
         if (time === this.times[this.times.length - 1]) this.forget(this.times.length - 1);
         if (this.times.length >= this.most) this.forget(1, true);
@@ -141,12 +127,12 @@ class LiveRun {
         this.track.add(this.reader.tables[0].codes, true);
         if (this.dots) this.dots.add(this.reader.tables[2].codes, false);
         this.leds.push(Uint32Array.from({length: count}, (_, object) => this.reader.bits(1, object)));
-        this.values.push(column ? this.readColumn(column, count) : null);
+        this.values.push(new Map(columns.flatMap((own, i) => own ? [[own, this.readColumn(own, COLUMN + i)]] : [])));
         return number;
     }
 
-    readColumn(number, count) {
-        const bits = Uint32Array.from({length: count}, (_, object) => this.reader.bits(3, object));
+    readColumn(number, table) {
+        const bits = Uint32Array.from({length: this.head.objects.length}, (_, object) => this.reader.bits(table, object));
         const values = new Float32Array(bits.buffer);
         const own = this.columns[number];
         for (const value of values) {
@@ -154,7 +140,7 @@ class LiveRun {
             own.from = Math.min(own.from, value);
             own.to = Math.max(own.to, value);
         }
-        return {number, values};
+        return values;
     }
 
     // Forgets the records from one on, or the first ones.
@@ -165,7 +151,7 @@ class LiveRun {
 
     setLight(levels) {
         const isDark = levels.every((level) => level === 0);
-        this.light = isDark ? null : lightPicture(this.head.palette, this.head.lightCells, levels);
+        this.light = isDark ? null : new Light(this.head.lightCells, levels);
     }
 
     lightAt() {
@@ -174,7 +160,7 @@ class LiveRun {
 
     wallColour(wall, index) {
         const led = this.leds[index][wall.object];
-        return led && led <= 0xffffff ? this.colourOfLed(led) : wall.dark;
+        return this.colours.ofLed(led <= 0xffffff ? led : 0, this.colours.dark_wall);
     }
 
     moreValues(object) {
@@ -243,8 +229,12 @@ class LivePlayer {
         this.send({do: "select", object});
     }
 
-    colourBy(name) {
-        this.send({do: "column", name: this.run.head.columnNames.includes(name) ? name : null});
+    // Asks for the values of columns that no frame has otherwise; of the first and the second name.
+    showColumns(names) {
+        const asked = names.map((name) => this.run.head.columnNames.includes(name) ? name : null);
+        if (JSON.stringify(asked) === JSON.stringify(this.asked)) return;
+        this.asked = asked;
+        this.send({do: "columns", color_by: asked[0], heat_map: asked[1] === asked[0] ? null : asked[1]});
     }
 
     drag(object, x, y) {

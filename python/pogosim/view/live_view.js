@@ -44,7 +44,7 @@ function takeBytes(data) {
     }
     player = new LivePlayer(run, act);
     player.keys = {...player.keys, p: () => toggle("settings", "adjust"), m: () => toggle("said", "lines"), s: savePicture};
-    begin.kept.state && (run.start = {...run.start, ...begin.kept.state});
+    run.start = {...run.start, ...begin.kept.start};
     view = swarmView(root, run, player);
     if (begin.kept.camera) Object.assign(view.camera, begin.kept.camera);
     if (begin.status) takeStatus(begin.status);
@@ -56,9 +56,9 @@ function begin(message) {
     const isSame = head && JSON.stringify(head.objects) === JSON.stringify(message.head.objects);
     begin.kept = {};
     if (view) {
-        const {state, camera} = view;
-        begin.kept.state = {speed: player.speed, trails: state.trails, links: state.links,
-                            colourBy: isSame ? state.colouring.name : "LED"};
+        const {camera} = view, chosen = view.chosen();
+        begin.kept.start = {speed: player.speed,
+                            view: isSame ? chosen : {...chosen, color_by: "", heat_map: "", follow: undefined}};
         if (isSame && !camera.fitted) begin.kept.camera = {x: camera.x, y: camera.y, scale: camera.scale, fitted: false};
         view.end();
     }
@@ -219,7 +219,7 @@ function toggleFilm() {
 
 // Asks for a change of the run, which only one that steers may.
 function act(message) {
-    const changes = !["select", "column", "steer"].includes(message.do);
+    const changes = !["select", "columns", "steer"].includes(message.do);
     if (changes && !steers) return tell("Another viewer steers this run.");
     send(message);
 }

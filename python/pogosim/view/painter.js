@@ -11,8 +11,7 @@ function pathOf(path, line) {
 
 // view: run, canvas, camera, poses of the objects now, and the state: what is chosen to be seen, and when.
 function makePainter({run, canvas, camera, poses, state}) {
-const {head, space} = run;
-const {palette} = head;
+const {head, space, colours} = run;
 const pen = canvas.getContext("2d");
 const count = head.objects.length;
 const categoryOf = (object) => head.categories[head.objects[object][0]];
@@ -36,25 +35,25 @@ function glowOf(colour) {
     return glows.get(colour);
 }
 
-const brightness = new Map();
-
-function isBright(colour) {
-    if (!brightness.has(colour)) {
-        const value = parseInt(colour.slice(1), 16);
-        brightness.set(colour, 0.299 * (value >> 16) + 0.587 * ((value >> 8) & 255) + 0.114 * (value & 255) > 64);
-    }
-    return brightness.get(colour);
-}
-
 // The colour of an object now. What has no LED is blue-grey, as where a column has no value.
 const colourOf = (object) =>
-    state.colouring.led && categoryOf(object).passive ? palette.no_led : state.colouring.colour(object, state.index);
+    state.colouring.led && categoryOf(object).passive ? colours.no_led : state.colouring.colour(object, state.index);
 
 function drawFloor() {
-    pen.fillStyle = palette.floor;
+    pen.fillStyle = colours.floor;
     pen.fill(floor, "evenodd");
-    const light = run.lightAt(state.index);
-    if (light) pen.drawImage(light, space.low[0], space.low[1], space.size[0], space.size[1]);
+    const light = state.shows.light_levels ? run.lightAt(state.index) : null;
+    if (light) pen.drawImage(light.picture(colours), ...space.low, ...space.size);
+}
+
+const robots = Array.from(poses.keys()).filter((object) => !categoryOf(object).passive && !categoryOf(object).membrane);
+
+// Returns what its colours mean; null: there is no heat map.
+function drawHeatMap() {
+    if (!state.heat) return null;
+    const map = heatMap({space, colours, poses, column: state.heatColumn, index: state.index, robots});
+    pen.drawImage(map.picture, ...space.low, map.width, map.height);
+    return map;
 }
 
 function drawWalls() {
@@ -77,7 +76,7 @@ function drawLamps() {
         const angle = orbit[2] + orbit[1] * state.time;
         const x = centre[0] + orbit[0] * Math.cos(angle), y = centre[1] + orbit[0] * Math.sin(angle);
         const radius = 5 / camera.scale;
-        pen.fillStyle = pen.strokeStyle = palette.lamp;
+        pen.fillStyle = pen.strokeStyle = colours.lamp;
         pen.lineWidth = 1.5 / camera.scale;
         pen.beginPath();
         pen.arc(x, y, radius, 0, 2 * Math.PI);
@@ -183,7 +182,7 @@ function linkedPairs() {
 }
 
 function drawLinks() {
-    pen.strokeStyle = palette.link_by_all_emitters;
+    pen.strokeStyle = colours.link_by_all_emitters;
     pen.globalAlpha = 0.55;
     pen.lineWidth = 1.1 / camera.scale;
     pen.beginPath();
@@ -205,7 +204,7 @@ function drawGlows() {
     for (let object = 0; object < count; object++) {
         const own = categoryOf(object), {x, y} = poses[object];
         const colour = colourOf(object);
-        if (own.passive || own.membrane || colour === palette.dark_led || !(x === x)) continue;
+        if (own.passive || own.membrane || colour === colours.dark_led || !(x === x)) continue;
         const reach = GLOW * own.radius;
         space.forEachImage(x, y, reach, (dx, dy) =>
             pen.drawImage(glowOf(colour), x + dx - reach, y + dy - reach, 2 * reach, 2 * reach));
@@ -229,7 +228,7 @@ function drawMembranes() {
         const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
         const middle = [(Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2];
         const reach = Math.max(...places.map(([x, y]) => Math.hypot(x - middle[0], y - middle[1])));
-        pen.strokeStyle = pen.fillStyle = group.object !== null ? colourOf(group.object) : palette.dark_led;
+        pen.strokeStyle = pen.fillStyle = group.object !== null ? colourOf(group.object) : colours.dark_led;
         pen.lineJoin = "round";
         pen.lineWidth = 2 * group.half_thickness * (group.segments ? 1 : 1 / 3);
         space.forEachImage(...middle, reach + group.half_thickness, (dx, dy) => {
@@ -263,12 +262,12 @@ function bodyPath(own, x, y, angle, scale = 1) {
 
 // Small disks with their rims as pictures, made once for each colour and zoom; twice as fine as the screen.
 const sprites = new Map();  // by radius, then by colour
-let spriteCount = 0, spritePixel = 0;
+let spriteCount = 0, spritePixel = 0, spriteVersion = 0;
 
 function spriteOf(colour, radius, pixel) {
-    if (pixel !== spritePixel || spriteCount >= MAX_SPRITES) {
+    if (pixel !== spritePixel || colours.version !== spriteVersion || spriteCount >= MAX_SPRITES) {
         sprites.clear();
-        [spriteCount, spritePixel] = [0, pixel];
+        [spriteCount, spritePixel, spriteVersion] = [0, pixel, colours.version];
     }
     if (!sprites.has(radius)) sprites.set(radius, new Map());
     let sprite = sprites.get(radius).get(colour);
@@ -279,7 +278,7 @@ function spriteOf(colour, radius, pixel) {
         ink.arc(2 * half, 2 * half, 2 * radius / pixel, 0, 2 * Math.PI);
         ink.fillStyle = colour;
         ink.fill();
-        ink.strokeStyle = palette.edge;
+        ink.strokeStyle = colours.edge;
         ink.lineWidth = 2 * 1.2 * (window.devicePixelRatio || 1);
         ink.stroke();
         sprite = {image: picture.transferToImageBitmap(), reach: half * pixel};
@@ -300,7 +299,7 @@ function drawBodies() {
         const colour = colourOf(object);
         const sprite = own.outline || own.membrane || own.radius > MAX_SPRITE * fine ? null
             : spriteOf(colour, own.radius, fine);
-        const tick = ticks[head.objects[object][0]][Number(isBright(colour))];
+        const tick = ticks[head.objects[object][0]][Number(colours.contrastTo(colour) === colours.edge)];
         space.forEachImage(x, y, own.radius, (dx, dy) => {
             const [px, py] = [x + dx, y + dy], margin = own.radius + 12 * pixel;
             if (px + margin < left || px - margin > right || py + margin < top || py - margin > bottom) return;
@@ -311,7 +310,7 @@ function drawBodies() {
                 bodyPath(own, px, py, angle);
                 pen.fillStyle = colour;
                 pen.fill();
-                pen.strokeStyle = palette.edge;
+                pen.strokeStyle = colours.edge;
                 pen.lineWidth = 1.2 * pixel;
                 pen.stroke();
             }
@@ -324,7 +323,7 @@ function drawBodies() {
     drawBodyLinks();
     pen.lineCap = "butt";
     ticks.forEach((paths, category) => paths.forEach((path, bright) => {
-        pen.strokeStyle = bright ? palette.edge : palette.paper;
+        pen.strokeStyle = bright ? colours.edge : colours.paper;
         pen.lineWidth = Math.min(2.2 * pixel, head.categories[category].reach / 4);
         pen.stroke(path);
     }));
@@ -360,17 +359,15 @@ function placedLinks() {
     return placed;
 }
 
-const channelsOf = (colour) => colour.match(/\w\w/g).map((text) => parseInt(text, 16));
-
 function tensionColour(load) {
-    const [from, to] = [palette.link_at_rest, load < 0 ? palette.link_pushed : palette.link_pulled].map(channelsOf);
-    return `rgb(${from.map((own, i) => Math.round(own + Math.abs(load) * (to[i] - own))).join(",")})`;
+    const [from, to] = [colours.link_at_rest, load < 0 ? colours.link_pushed : colours.link_pulled].map(channelsOf);
+    return hexOf(mixed(from, to, Math.abs(load)));
 }
 
 function drawDot(x, y, radius, colour) {
     pen.beginPath();
     pen.arc(x, y, (radius + 0.6) / camera.scale, 0, 2 * Math.PI);
-    pen.fillStyle = palette.edge;
+    pen.fillStyle = colours.edge;
     pen.fill();
     pen.beginPath();
     pen.arc(x, y, radius / camera.scale, 0, 2 * Math.PI);
@@ -386,7 +383,7 @@ function drawBodyLinks() {
             const [px, py] = [x + ox, y + oy];
             if (kind === "hinge") return drawDot(px, py, 3.6, colour);
             const width = kind === "rod" ? 3 : 2;
-            for (const [own, extra] of [[palette.edge, 1.2], [colour, 0]]) {
+            for (const [own, extra] of [[colours.edge, 1.2], [colour, 0]]) {
                 pen.strokeStyle = own;
                 pen.lineWidth = (width + extra) / camera.scale;
                 pen.beginPath();
@@ -408,13 +405,13 @@ function drawMark(x, y, colour) {
 }
 
 function drawSelection() {
-    for (const [object, colour, width] of [[state.hovered, "#ffffff", 1.5], [state.selected, palette.selection_rim, 3]]) {
+    for (const [object, colour, width] of [[state.hovered, colours.selection, 1.5], [state.selected, colours.selection_rim, 3]]) {
         if (object < 0 || !(poses[object].x === poses[object].x)) continue;
         const own = categoryOf(object), {x, y, angle} = poses[object];
         const larger = 1 + 3 / (camera.scale * own.radius);
         space.forEachImage(x, y, own.radius * larger, (dx, dy) => {
             bodyPath(own, x + dx, y + dy, angle, larger);
-            pen.strokeStyle = palette.selection;
+            pen.strokeStyle = colours.selection;
             pen.lineWidth = (width + 1.5) / camera.scale;
             pen.stroke();
             pen.strokeStyle = colour;
@@ -429,20 +426,44 @@ function drawScaleBar() {
     const power = 10 ** Math.floor(Math.log10(most));
     const length = power * [5, 2, 1].find((step) => step * power <= most);
     const y = canvas.clientHeight - 22;
-    pen.fillStyle = palette.ink;
+    pen.fillStyle = colours.ink;
     pen.fillRect(16, y, length * camera.scale, 2.5);
-    pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+    pen.font = `12px ${FONT}`;
     pen.fillText(`${Number(length.toPrecision(3))} mm`, 16, y + 16);
 }
 
+// Where objects would be a second later.
+function velocities() {
+    const share = run.track.shareAt(state.time, state.index);
+    return Array.from(poses.keys(), (object) => {
+        const [dx, dy] = run.track.velocity(object, state.index, share);
+        return {...poses[object], dx, dy};
+    }).filter(({x, dx}, object) => x === x && dx === dx && !categoryOf(object).membrane);
+}
+
+function labels() {
+    const beside = colours.floor;
+    return robots.filter((object) => poses[object].x === poses[object].x && head.objects[object][1] !== null).map((object) => ({
+        ...poses[object], radius: categoryOf(object).radius, text: String(head.objects[object][1]),
+        below: colourOf(object), beside,
+    }));
+}
+
+function drawMarks() {
+    const {velocities: arrows, labels: ids} = state.shows;
+    if (arrows) drawArrows({pen, camera, space, colour: colours.contrastTo(colours.floor)}, velocities());
+    if (ids) drawLabels({pen, camera, space, colours}, labels());
+}
+
+// Returns what the colours of the heat map mean; null: there is none.
 function draw() {
-    if (state.follow && state.selected >= 0) {
-        const {x, y} = poses[state.selected];
+    if (state.followed >= 0) {
+        const {x, y} = poses[state.followed];
         if (x === x) camera.moveTo(x, y);
     }
     const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.fillStyle = palette.paper;
+    pen.fillStyle = colours.paper;
     pen.fillRect(0, 0, canvas.clientWidth, canvas.clientHeight);
     const scale = camera.scale * ratio;
     const [left, top] = camera.toScreen(0, 0);
@@ -450,26 +471,30 @@ function draw() {
     pen.save();
     pen.clip(floor, "evenodd");
     drawFloor();
+    const heat = drawHeatMap();
     drawWalls();
     drawLamps();
-    if (state.trails) drawTrails();
-    if (state.links) drawLinks();
+    if (state.shows.trails) drawTrails();
+    if (state.shows.links === "below") drawLinks();
     drawGlows();
     if (!space.isPeriodic) pen.restore();
     drawMembranes();
     drawBodies();
+    if (state.shows.links === "above") drawLinks();
     if (space.isPeriodic) {
         drawSelection();
         pen.restore();
     }
-    pen.strokeStyle = palette.wall;
+    pen.strokeStyle = colours.wall;
     pen.lineWidth = 3 / camera.scale;
     pen.lineJoin = "round";
     pen.stroke(floor);
     if (!space.isPeriodic) drawSelection();
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    drawScaleBar();
+    drawMarks();
+    if (state.shows.scale_bar) drawScaleBar();
+    return heat;
 }
 
-return {draw, colourOf, categoryOf, linkedPairs, placedLinks};
+return {draw, colourOf, categoryOf, linkedPairs, placedLinks, velocities, labels};
 }

@@ -59,9 +59,10 @@ class RecordedTrack extends Track {
 
 // A column of the data file: values, and the colours that stand for them.
 class RecordedColumn {
-    constructor(head, codes, own) {
+    constructor(head, shown, codes, own) {
         Object.assign(this, own);
-        Object.assign(this, {head, codes, isListed: !own.base || own.led});
+        Object.assign(this, {head, shown, codes, isListed: !own.base || own.led});
+        this.lights = own.led ? own.labels.map((label) => parseInt(label.slice(1), 16)) : null;
     }
 
     code(object, index) {
@@ -77,9 +78,10 @@ class RecordedColumn {
 
     colour(object, index) {
         const code = this.code(object, index);
-        if (code === MISSING) return this.head.palette.no_led;
+        if (code === MISSING) return this.shown.no_led;
+        if (this.lights) return this.shown.ofLed(this.lights[code]);
         if (this.colours) return this.colours[code];
-        return shadeOn(this.head.shades[this.shades], this.value(object, index), this.from, this.to);
+        return this.shown.ofValue(this.shades, this.value(object, index), this.from, this.to);
     }
 }
 
@@ -87,26 +89,27 @@ class RecordedRun {
     // head: as replay.py makes it; tables: as readTables() returns them.
     constructor(head, tables) {
         this.head = head;
-        this.start = head.start;
+        this.start = {...head.start, view: head.view};
         this.space = new Space(head);
         this.times = Float64Array.from(head.times);
         this.track = new RecordedTrack(tables, head.poses, this.times, this.space);
         this.dots = head.membranes
             ? new RecordedTrack(tables, head.membranes.poses, Float64Array.from(head.membranes.times), this.space) : null;
         this.bodyLinks = head.bodyLinks;
-        this.lights = head.lights.map(([from, table]) =>
-            ({from, picture: lightPicture(head.palette, head.lightCells, tables[table])}));
-        this.columns = head.columns.map((own) => new RecordedColumn(head, tables[own.table], own));
+        this.colours = new Colours(head.palette);
+        this.lights = head.lights.map(([from, table]) => ({from, light: new Light(head.lightCells, tables[table])}));
+        this.columns = head.columns.map((own) => new RecordedColumn(head, this.colours, tables[own.table], own));
         const names = new Set(this.columns.map((column) => column.name));
-        this.columns.push(...columnsOfPoses(head, this.track, head.poses).filter((column) => !names.has(column.name)));
+        this.columns.push(...columnsOfPoses(this, head.poses).filter((column) => !names.has(column.name)));
     }
 
     lightAt(index) {
-        return this.lights.filter(({from}) => from <= index).pop()?.picture;
+        return this.lights.filter(({from}) => from <= index).pop()?.light;
     }
 
     wallColour(wall, index) {
-        return (wall.colours.filter(([from]) => from <= index).pop() || wall.colours[0])[1];
+        const [, colour] = wall.colours.filter(([from]) => from <= index).pop() || wall.colours[0];
+        return colour === null ? this.colours.dark_wall : this.colours.ofLight(colour);
     }
 }
 

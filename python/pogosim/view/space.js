@@ -50,13 +50,14 @@ class Camera {
                 (py - this.canvas.clientHeight / 2) / this.scale + this.y];
     }
 
-    fit() {
+    // Shows the whole arena, or `zoom` times as large.
+    fit(zoom = 1) {
         const margin = 46, {low, high, size} = this.space;
         const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-        this.scale = Math.max(Math.min((width - 32) / size[0], (height - 2 * margin) / size[1]), 1e-6);
+        this.scale = zoom * Math.max(Math.min((width - 32) / size[0], (height - 2 * margin) / size[1]), 1e-6);
         this.x = (low[0] + high[0]) / 2;
         this.y = (low[1] + high[1]) / 2;
-        this.fitted = true;
+        [this.fitted, this.zoomAtFit] = [true, zoom];
     }
 
     zoom(factor, px, py) {

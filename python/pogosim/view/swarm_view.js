@@ -5,23 +5,35 @@ const TAIL_S = 5;
 // Shows a run in the elements of view.html.
 //
 // root: the document, or a shadow root, that has these elements.
-// run: what is shown, a RecordedRun or a LiveRun: head, space, times, track, dots, columns, bodyLinks, lightAt(index),
-//     wallColour(wall, index); start: how it begins; moreValues(object).
+// run: what is shown, a RecordedRun or a LiveRun: head, space, colours, times, track, dots, columns, bodyLinks,
+//     lightAt(index), wallColour(wall, index); start: how it begins: speed, tail_s, and view, the section of that name of a
+//     configuration; moreValues(object).
 // player: what moves time: isPlaying, toggle(), step(records), setSpeed(speed), speeds, seek(time), tick(now);
-//     optional: drag(object, x, y), select(object), colourBy(name), keys.
+//     optional: drag(object, x, y), select(object), showColumns(names), keys.
 function swarmView(root, run, player) {
 const {head} = run;
 const count = head.objects.length;
 const element = (id) => root.getElementById(id);
 const canvas = element("arena");
 const poses = Array.from({length: count}, () => ({x: NaN, y: NaN, angle: NaN}));
-const state = {time: run.times[0], index: 0, trails: false, links: false, follow: false, selected: -1, hovered: -1,
-               tail: run.start.tail_s ?? TAIL_S, frames: 0, colouring: null};
+const state = {
+    time: run.times[0], index: 0, selected: -1, hovered: -1, followed: -1, tail: run.start.tail_s ?? TAIL_S, frames: 0, ratio: 0,
+    shows: {},  // what is switched on, by the names of the switches
+    colouring: run.columns[0], heat: "", heatColumn: null,
+};
 const camera = new Camera(canvas, run.space);
 const painter = makePainter({run, canvas, camera, poses, state});
 const {categoryOf, colourOf} = painter;
+const switches = new Switches(root, state.shows, (name) => {
+    if (name === "theme" || name === "palette") {
+        run.colours.choose(state.shows.theme, state.shows.palette);
+        showKey();
+    }
+    element("clock").hidden = !state.shows.time;
+    dirty = true;
+});
 const ended = new AbortController();  // of all that listens
-let dirty = true;
+let dirty = true, heatKey = null;
 
 function redraw() {
     dirty = true;
@@ -50,52 +62,71 @@ function colourBy(name) {
     if (!found) throw new Error(`no column ${name}`);
     state.colouring = found;
     element("colour").value = name;
-    player.colourBy?.(name);
+    showColumns();
+}
+
+// name: "", DENSITY, or that of a column of numbers.
+function heatBy(name) {
+    state.heatColumn = run.columns.find((column) => column.name === name && column.shades) ?? null;
+    state.heat = name === DENSITY || state.heatColumn ? name : "";
+    element("heat").value = state.heat;
+    showColumns();
+}
+
+function showColumns() {
+    player.showColumns?.([state.colouring.name, state.heat]);
     showKey();
     dirty = true;
 }
 
 function select(object) {
     state.selected = object;
-    if (object < 0) setSwitch("follow", false);
+    if (state.followed >= 0) follow(object);
     player.select?.(object);
     dirty = true;
 }
 
-function setSwitch(name, on) {
-    state[name] = on;
-    element(name).checked = on;
+// Keeps an object in the middle; -1: none.
+function follow(object) {
+    state.followed = object;
+    element("follow").checked = object >= 0;
     dirty = true;
 }
 
+const followSelected = (on) => follow(on ? state.selected : -1);
+
 function fit() {
     camera.fit();
-    setSwitch("follow", false);
+    follow(-1);
 }
 
 function resize() {
-    const ratio = window.devicePixelRatio || 1;
-    canvas.width = Math.max(Math.round(canvas.clientWidth * ratio), 1);
-    canvas.height = Math.max(Math.round(canvas.clientHeight * ratio), 1);
-    if (camera.fitted) fit();
+    state.ratio = window.devicePixelRatio || 1;
+    canvas.width = Math.max(Math.round(canvas.clientWidth * state.ratio), 1);
+    canvas.height = Math.max(Math.round(canvas.clientHeight * state.ratio), 1);
+    if (camera.fitted) camera.fit(camera.zoomAtFit);
     dirty = true;
 }
 
 // The object at a place on the screen, -1 if there is none; with a few pixels to spare.
-function objectAt(px, py) {
+function objectAt(px, py, slack) {
     const [x, y] = camera.toArena(px, py);
     let nearest = -1, least = Infinity;
     for (let object = 0; object < count; object++) {
         const [dx, dy] = run.space.nearestImage(x - poses[object].x, y - poses[object].y);
         const distance = Math.hypot(dx, dy);
-        const radius = categoryOf(object).membrane ? 8 / camera.scale : categoryOf(object).radius + 3 / camera.scale;
+        const radius = categoryOf(object).membrane ? 8 / camera.scale : categoryOf(object).radius + slack / camera.scale;
         if (distance <= radius && distance < least) [nearest, least] = [object, distance];
     }
     return nearest;
 }
 
 function draw() {
-    painter.draw();
+    const heat = painter.draw();
+    if (heat?.to !== heatKey?.to || heat?.from !== heatKey?.from || heat?.name !== heatKey?.name) {
+        heatKey = heat;
+        showKey();
+    }
     element("clock").textContent = `${state.time.toFixed(2)} s`;
     const scrub = element("scrub");
     [scrub.min, scrub.max] = [String(run.times[0]), String(run.times[run.times.length - 1])];
@@ -108,6 +139,7 @@ function draw() {
 function tick(now) {
     if (ended.signal.aborted) return;
     player.tick(now);
+    if (state.ratio !== (window.devicePixelRatio || 1)) resize();  // it is on another screen now
     if (dirty) {
         dirty = false;
         draw();
@@ -168,8 +200,18 @@ function heading(text) {
 // What the colours mean: a bar for numbers, a list for names, nothing for LEDs.
 function showKey() {
     const key = element("key");
-    key.hidden = Boolean(state.colouring.led);
-    key.replaceChildren(heading(state.colouring.name));
+    const isOfRobots = !state.colouring.led, heat = state.heat ? heatKey : null;
+    key.hidden = !isOfRobots && !heat;
+    key.replaceChildren();
+    if (isOfRobots) showColouring(key);
+    if (heat) key.append(heading(heat.name), ...barOf(heat));
+}
+
+const UNITS = {speed: "mm/s", angle: "rad"};
+
+function showColouring(key) {
+    const {name} = state.colouring;
+    key.append(heading(UNITS[name] ? `${name} (${UNITS[name]})` : name));
     if (state.colouring.labels && !state.colouring.base) {
         state.colouring.labels.slice(0, 40).forEach((label, i) => key.append(entry(label, state.colouring.colours[i])));
         if (state.colouring.labels.length > 40) key.append(`and ${state.colouring.labels.length - 40} more`);
@@ -180,19 +222,22 @@ function showKey() {
             key.append(entry(own.name, state.colouring.colour(object, run.times.length - 1)));
         });
     } else {
-        const bar = document.createElement("div");
-        bar.className = "bar";
-        const shades = head.shades[state.colouring.shades];
-        bar.style.background = `linear-gradient(to right, ${shades.filter((_, i) => i % 15 === 0).join(", ")})`;
-        const ends = document.createElement("div");
-        ends.className = "ends";
-        ends.append(...[state.colouring.from, state.colouring.to].map((value) => {
-            const end = document.createElement("span");
-            end.textContent = String(Number(value.toPrecision(4)));
-            return end;
-        }));
-        key.append(bar, ends);
+        key.append(...barOf(state.colouring));
     }
+}
+
+function barOf({from, to, shades}) {
+    const bar = document.createElement("div");
+    bar.className = "bar";
+    bar.style.background = `linear-gradient(to right, ${run.colours.shades[shades].filter((_, i) => i % 15 === 0).join(", ")})`;
+    const ends = document.createElement("div");
+    ends.className = "ends";
+    ends.append(...[from, to].map((value) => {
+        const end = document.createElement("span");
+        end.textContent = String(Number(value.toPrecision(4)));
+        return end;
+    }));
+    return [bar, ends];
 }
 
 function entry(label, colour) {
@@ -205,6 +250,12 @@ function entry(label, colour) {
 }
 
 // ---- controls
+
+function toggleLooks() {
+    const looks = element("looks");
+    looks.hidden = !looks.hidden;
+    element("look").setAttribute("aria-expanded", String(!looks.hidden));
+}
 
 function toggleHelp(show = element("help").hidden) {
     element("help").hidden = !show;
@@ -219,12 +270,13 @@ const KEYS = {
     "+": () => setSpeed(nextSpeed(1)),
     "=": () => setSpeed(nextSpeed(1)),
     "-": () => setSpeed(nextSpeed(-1)),
-    t: () => setSwitch("trails", !state.trails),
-    l: () => setSwitch("links", !state.links),
-    f: () => setSwitch("follow", !state.follow && state.selected >= 0),
+    ...switches.keys(),
+    d: () => heatBy(state.heat === DENSITY ? "" : DENSITY),
+    f: () => followSelected(state.followed < 0),
     0: fit,
+    F9: () => toggleLooks(),
     "?": () => toggleHelp(),
-    Escape: () => { toggleHelp(false); select(-1); },
+    Escape: () => { toggleHelp(false); select(-1); follow(-1); },
     ...player.keys,
 };
 
@@ -256,53 +308,14 @@ function listenToKeys() {
     });
 }
 
-function listenToMouse() {
-    let drag = null;
-    const place = (event) => [event.offsetX, event.offsetY];
-    listen(canvas, "wheel", (event) => {
-        // In another page, which is scrolled, until the view has been clicked.
-        if ((window !== window.parent && !document.hasFocus()) || (root !== document && root.activeElement !== canvas)) return;
-        event.preventDefault();
-        camera.zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.0015)), ...place(event));
-        dirty = true;
-    }, {passive: false});
-    listen(canvas, "pointerdown", (event) => {
-        drag = {at: place(event), camera: [camera.x, camera.y], moved: false, object: objectAt(...place(event))};
-        canvas.setPointerCapture(event.pointerId);
-    });
-    listen(canvas, "pointermove", (event) => {
-        const [px, py] = place(event);
-        if (drag) {
-            const [dx, dy] = [px - drag.at[0], py - drag.at[1]];
-            drag.moved = drag.moved || Math.hypot(dx, dy) > 4;
-            if (!drag.moved) return;
-            if (player.drag && drag.object >= 0) {
-                player.drag(drag.object, ...camera.toArena(px, py));
-            } else {
-                setSwitch("follow", false);
-                camera.moveTo(drag.camera[0] - dx / camera.scale, drag.camera[1] - dy / camera.scale);
-            }
-        } else {
-            state.hovered = objectAt(px, py);
-            canvas.style.cursor = state.hovered < 0 ? "default" : "pointer";
-        }
-        dirty = true;
-    });
-    listen(canvas, "pointerup", (event) => {
-        if (drag && !drag.moved) select(objectAt(...place(event)));
-        drag = null;
-    });
-    listen(canvas, "pointerleave", () => { state.hovered = -1; dirty = true; });
-}
-
 function listenToControls() {
     listen(element("play"), "click", () => player.toggle());
     listen(element("scrub"), "input", (event) => player.seek(Number(event.target.value)));
     listen(element("speed"), "change", (event) => setSpeed(Number(event.target.value)));
     listen(element("colour"), "change", (event) => colourBy(event.target.value));
-    for (const name of ["trails", "links", "follow"]) {
-        listen(element(name), "change", (event) => setSwitch(name, event.target.checked));
-    }
+    listen(element("heat"), "change", (event) => heatBy(event.target.value));
+    listen(element("follow"), "change", (event) => followSelected(event.target.checked));
+    listen(element("look"), "click", toggleLooks);
     listen(element("fit"), "click", fit);
     listen(element("ask"), "click", () => toggleHelp());
     const resized = new ResizeObserver(resize);
@@ -320,29 +333,48 @@ function fillControls() {
     element("speed").replaceChildren(...speeds.map((speed) => new Option(label(speed), String(speed))));
     fillColours();
     setSpeed(run.start.speed);
-    setSwitch("trails", run.start.trails);
-    setSwitch("links", run.start.links);
 }
 
 function fillColours() {
-    element("colour").replaceChildren(...run.columns.map((column) => new Option(column.name, column.name)));
+    const optionsOf = (columns) => columns.map(({name}) => new Option(name, name));
+    element("colour").replaceChildren(...optionsOf(run.columns));
+    element("heat").replaceChildren(new Option("none", ""), new Option(DENSITY, DENSITY),
+                                    ...optionsOf(run.columns.filter((column) => column.shades)));
+}
+
+// Shows what a configuration says.
+function begin(view) {
+    switches.begin(view);
+    colourBy((run.columns.find((column) => column.name === view.color_by) ?? run.columns[0]).name);
+    heatBy(view.heat_map ?? "");
+    camera.fit(view.zoom ?? 1);
+    follow(head.objects.findIndex(([category, id]) => id === view.follow && !head.categories[category].passive));
+}
+
+// Returns what is shown, as a configuration says it.
+function chosen() {
+    const id = state.followed < 0 ? undefined : head.objects[state.followed][1];
+    return {...state.shows, color_by: state.colouring.name, heat_map: state.heat, follow: id};
 }
 
 const view = {
-    state, camera, run, player, poses, painter, element, setTime, showPlaying, setSpeed, colourBy, select, setSwitch, fit,
-    redraw, draw, valuesOf, colourOf, showKey, fillColours, listen,
+    state, camera, run, player, poses, painter, element, setTime, showPlaying, setSpeed, colourBy, heatBy, select,
+    follow, fit, switches, chosen, redraw, draw, valuesOf, colourOf, showKey, fillColours, listen,
     // Takes the view out of the page: nothing listens or draws any more.
     end: () => ended.abort(),
 };
 player.attach(view);
 fillControls();
-const first = run.columns.find((column) => column.name === run.start.colourBy) || run.columns[0];
-colourBy(first.name);
 listenToKeys();
-listenToMouse();
+listenToPointers(canvas, camera, listen, {
+    objectAt, select, redraw, drag: player.drag?.bind(player), release: () => follow(-1),
+    hover: (object) => { state.hovered = object; dirty = true; },
+    // In another page, which is scrolled, the wheel zooms once the view has been clicked.
+    isActive: () => (window === window.parent || document.hasFocus()) && (root === document || root.activeElement === canvas),
+});
 listenToControls();
+begin(run.start.view);
 resize();
-fit();
 setTime(run.times[0]);
 showPlaying();
 requestAnimationFrame(tick);

@@ -43,43 +43,36 @@ class Track {
         if (turn === turn) pose.angle += share * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
         return pose;
     }
+
+    // How far an object comes in a second, mm, as it moves between the two times around one, or up to a time of the record.
+    velocity(object, index, share) {
+        const from = share > 0 ? index : index - 1;
+        if (from < 0 || from + 1 >= this.times.length) return [0, 0];
+        const [dx, dy] = this.space.nearestImage(this.x(object, from + 1) - this.x(object, from),
+                                                 this.y(object, from + 1) - this.y(object, from));
+        const seconds = this.times[from + 1] - this.times[from];
+        return [dx / seconds, dy / seconds];
+    }
 }
 
-// The colour of a value on a scale from low to high.
-const shadeOn = (shades, value, from, to) =>
-    shades[Math.min(Math.max(Math.floor((value - from) / ((to - from) || 1) * shades.length), 0), shades.length - 1)];
-
 // A column that every run has, computed from what a record knows anyway.
-function computedColumn(head, name, valueOf, from, to, shades) {
+function computedColumn(colours, name, valueOf, from, to, shades) {
     const own = {name, from, to, shades, value: valueOf};
     own.colour = (object, index) => {
         const value = valueOf(object, index);
-        return value === null || value !== value ? head.palette.no_led
-            : shadeOn(head.shades[shades], value, own.from, own.to);
+        return value === null || value !== value ? colours.no_led : colours.ofValue(shades, value, own.from, own.to);
     };
     return own;
 }
 
 // robot_id, x, y and angle. poses: limits of x and y.
-function columnsOfPoses(head, track, poses) {
+function columnsOfPoses({head, track, colours}, poses) {
     const ids = head.objects.map(([, id]) => id).filter((id) => id !== null);
     const [least, most] = [ids.reduce((a, b) => Math.min(a, b), Infinity), ids.reduce((a, b) => Math.max(a, b), -Infinity)];
     return [
-        computedColumn(head, "robot_id", (object) => head.objects[object][1], least, most, "number"),
-        computedColumn(head, "x", (object, index) => track.x(object, index), poses.x.low, poses.x.high, "number"),
-        computedColumn(head, "y", (object, index) => track.y(object, index), poses.y.low, poses.y.high, "number"),
-        computedColumn(head, "angle", (object, index) => track.angle(object, index), -Math.PI, Math.PI, "angle"),
+        computedColumn(colours, "robot_id", (object) => head.objects[object][1], least, most, "number"),
+        computedColumn(colours, "x", (object, index) => track.x(object, index), poses.x.low, poses.x.high, "number"),
+        computedColumn(colours, "y", (object, index) => track.y(object, index), poses.y.low, poses.y.high, "number"),
+        computedColumn(colours, "angle", (object, index) => track.angle(object, index), -Math.PI, Math.PI, "angle"),
     ];
-}
-
-// Light on the floor as a small picture, to be stretched over the arena. levels: 0 to 255, row by row.
-function lightPicture(palette, cells, levels) {
-    const lamplight = palette.lamplight.match(/\w\w/g).map((text) => parseInt(text, 16));
-    const picture = document.createElement("canvas");
-    picture.width = picture.height = cells;
-    const image = new ImageData(cells, cells);
-    levels.forEach((level, cell) =>
-        image.data.set([...lamplight, Math.round(level * palette.brightest_lamplight)], 4 * cell));
-    picture.getContext("2d").putImageData(image, 0, 0);
-    return picture;
 }

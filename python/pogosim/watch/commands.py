@@ -58,7 +58,7 @@ def is_object(value: Any) -> bool:
 COMMANDS: dict[str, tuple[dict[str, Check], bool]] = {
     "shown": ({"frame": is_whole(0, 2**32 - 1)}, False),
     "select": ({"object": is_object}, False),
-    "column": ({"name": or_none(is_name)}, False),
+    "columns": ({"color_by": or_none(is_name), "heat_map": or_none(is_name)}, False),
     "steer": ({}, False),
     "play": ({}, True),
     "pause": ({}, True),

@@ -3,15 +3,15 @@
 A frame, little-endian:
 
     bytes 0-1    1: kind of the message
-    bytes 2-3    number of the column whose values follow, from 1; 0: none
-    bytes 4-7    number of the frame, which the viewer sends back when it has shown it
-    bytes 8-15   simulated time, s, a double
-    then         four tables: poses (objects, 3), LEDs (objects, 2), parts (parts, 2), column (objects, 2)
+    bytes 2-5    numbers of the two columns whose values follow, two bytes each, from 1; 0: none
+    bytes 6-9    number of the frame, which the viewer sends back when it has shown it
+    bytes 10-17  simulated time, s, a double
+    then         tables: poses (objects, 3), LEDs (objects, 2), parts (parts, 2), each column (objects, 2)
 
 A table has a bit for each row, the lowest bit of a byte first: whether the row differs from what the viewer has. Then
 come the differences of these rows, modulo 65536, one column of the table after the other: the low bytes of all, then
 the high bytes, which are mostly equal. Before its first frame a viewer has zeros. Codes of poses go from 0 at one end
-of the box to 65534 at the other, of headings from -pi to pi; 65535 stands for no value. LEDs and values of the column
+of the box to 65534 at the other, of headings from -pi to pi; 65535 stands for no value. LEDs and values of columns
 are the high and the low half of 32 bits.
 
 The light on the floor is a message of its own: two bytes 2, 0, then a byte for each cell.
@@ -20,6 +20,7 @@ The light on the floor is a message of its own: two bytes 2, 0, then a byte for 
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -30,7 +31,9 @@ from pogosim.shapes import Floats
 from pogosim.watch.looking import Look
 
 FRAME, LIGHT = 1, 2
-HEADER = struct.Struct("<HHId")
+HEADER = struct.Struct("<HHHId")
+Column = tuple[str, int]  # a name and a number, from 1; ("", 0): none
+NO_COLUMN: Column = ("", 0)
 
 Codes = npt.NDArray[np.uint16]
 
@@ -45,16 +48,21 @@ def codes_of_places(places_mm: npt.NDArray[np.float32], low: Floats, high: Float
     return [quantised(places_mm[:, axis].astype(float), float(low[axis]), float(high[axis])) for axis in range(2)]
 
 
-def tables_of(look: Look, low: Floats, high: Floats, column: str | None) -> list[Codes]:
-    """Return the tables of a look in a box, with the values of one column; None: of none."""
+def tables_of(look: Look, low: Floats, high: Floats, columns: Sequence[Column]) -> list[Codes]:
+    """Return the tables of a look in a box, with one of values for each column; those of none are empty."""
     headings = quantised(look.poses[:, 2].astype(float), -np.pi, np.pi)
-    values = look.columns.get(column) if column else None
-    no_values = np.zeros((0, 2), np.uint16)
+
+    def values_of(name: str) -> Codes:
+        values = look.columns.get(name)
+        if values is None:
+            return np.zeros((0, 2), np.uint16)
+        return halves(np.ascontiguousarray(values, np.float32).view(np.uint32))
+
     return [
         np.stack([*codes_of_places(look.poses, low, high), headings], axis=-1),
         halves(look.leds),
         np.stack(codes_of_places(look.parts_mm, low, high), axis=-1),
-        no_values if values is None else halves(np.ascontiguousarray(values, np.float32).view(np.uint32)),
+        *(values_of(name) for name, _ in columns),
     ]
 
 
@@ -76,18 +84,19 @@ class FrameWriter:
     high: Floats
     number: int = 0
     known: list[Codes] = field(default_factory=list)  # what the viewer has
-    column_number: int = 0  # of the last frame
+    column_numbers: list[int] = field(default_factory=list)  # of the last frame
 
-    def frame(self, look: Look, column: str | None = None, column_number: int = 0) -> bytes:
-        """Return the next frame; `column_number`: of the column, from 1."""
-        tables = tables_of(look, self.low, self.high, column)
-        column_number = column_number if len(tables[3]) else 0
+    def frame(self, look: Look, columns: tuple[Column, Column] = (NO_COLUMN, NO_COLUMN)) -> bytes:
+        """Return the next frame, with values of these columns."""
+        tables = tables_of(look, self.low, self.high, columns)
+        numbers = [number if len(table) else 0 for table, (_, number) in zip(tables[3:], columns, strict=True)]
         before = self.known or [np.zeros_like(table) for table in tables]
-        if column_number != self.column_number:
-            before[3] = np.zeros_like(tables[3])
+        for i, (number, own) in enumerate(zip(numbers, self.column_numbers or numbers, strict=True), start=3):
+            if number != own:
+                before[i] = np.zeros_like(tables[i])
         self.number += 1
-        self.known, self.column_number = tables, column_number
-        head = HEADER.pack(FRAME, column_number, self.number, look.time_s)
+        self.known, self.column_numbers = tables, numbers
+        head = HEADER.pack(FRAME, *numbers, self.number, look.time_s)
         return head + b"".join(changes(table, own) for table, own in zip(tables, before, strict=True))
 
 

@@ -25,7 +25,7 @@ from pogosim.lines import printable_lines
 from pogosim.simulation import ProgramFailedError, Simulation, SimulationError
 from pogosim.simulation.library import check, library
 from pogosim.watch.commands import Command, RefusedError
-from pogosim.watch.frames import light_message
+from pogosim.watch.frames import NO_COLUMN, Column, light_message
 from pogosim.watch.looking import Look, look_at
 from pogosim.watch.pace import PERIOD_S, Pace
 from pogosim.watch.stage import Stage, lamp_data, link_data, plain_numbers
@@ -297,8 +297,8 @@ class LiveRun:
 
     def _look(self, simulation: Simulation) -> Look:
         assert self._stage is not None
-        wanted = {viewer.column for viewer in self._viewers} - {None}
-        columns = {name: object_values(simulation, name, self._stage.robots) for name in wanted if name}
+        wanted = {name for viewer in self._viewers for name, _ in viewer.columns} - {""}
+        columns = {name: object_values(simulation, name, self._stage.robots) for name in wanted}
         return look_at(self._stage.run, columns)
 
     def _tell_details(self, simulation: Simulation) -> None:
@@ -365,12 +365,16 @@ class LiveRun:
         viewer.selected = object
         self._details_at_s = 0.0
 
-    def _do_column(self, _: Simulation, viewer: Viewer, name: str | None) -> None:
-        if name is not None and name not in self._columns:
-            raise RefusedError(f"the robots have no value {name!r} that colours could show")
-        viewer.column = name
-        viewer.column_number = 0 if name is None else self._columns.index(name) + 1
+    def _do_columns(self, _: Simulation, viewer: Viewer, color_by: str | None, heat_map: str | None) -> None:
+        viewer.columns = (self._column(color_by), self._column(heat_map))
         self._is_changed = True
+
+    def _column(self, name: str | None) -> Column:
+        if name is None:
+            return NO_COLUMN
+        if name not in self._columns:
+            raise RefusedError(f"the robots have no value {name!r} that colours could show")
+        return name, self._columns.index(name) + 1
 
     def _do_steer(self, _: Simulation, viewer: Viewer) -> None:
         if not viewer.may_steer:

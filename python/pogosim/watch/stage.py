@@ -9,11 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.film.packing import hex_colour, shades_of
 from pogosim.object_facts import entries_of
 from pogosim.picture import layers
 from pogosim.picture.body_links import LEAST_TENSION_N, N_PER_MM
-from pogosim.picture.colouring import scale_of
 from pogosim.picture.figure import counted
 from pogosim.picture.palette import PALETTE
 from pogosim.scene import Kind, bounds, floor_outline, kinds_in, read_periodic
@@ -23,6 +21,7 @@ from pogosim.simulation.library import library
 from pogosim.simulation.objects import object_state
 from pogosim.utils import parsed
 from pogosim.varied import leaves
+from pogosim.view.beginning import view_of
 from pogosim.view.kinds import category_data
 from pogosim.watch.looking import owners_of_parts
 
@@ -81,10 +80,6 @@ class Stage:
             "periodic": read_periodic(self._configuration),
             "categories": [category_data(name, kind) for name, kind in zip(self._names, self._kinds, strict=True)],
             "objects": [[int(own.category), int(own.id)] for own in self._states],
-            "shades": {
-                "number": shades_of(scale_of("", np.zeros(1))),
-                "angle": shades_of(scale_of("angle", np.zeros(1))),
-            },
             "columnNames": list(columns),
             "lightCells": LIGHT_CELLS,
             "walls": self._walls(),
@@ -92,6 +87,7 @@ class Stage:
             "membranes": self._membranes(owners),
             "bodyLinks": None,
             "palette": PALETTE,
+            "view": view_of(self._configuration),
         }
 
     def _title(self) -> str:
@@ -106,7 +102,6 @@ class Stage:
         return [
             {
                 "object": index,
-                "dark": hex_colour(layers.wall_colour(None)),
                 "lines": [
                     np.round(line, 3).tolist() for line in layers.wall_lines(self._kinds[own.category], self._polygons)
                 ],

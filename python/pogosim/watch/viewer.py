@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pogosim.shapes import Floats
-from pogosim.watch.frames import FrameWriter
+from pogosim.watch.frames import NO_COLUMN, Column, FrameWriter
 from pogosim.watch.looking import Look
 
 MOST_UNDER_WAY = 6  # frames that were sent and not shown yet
@@ -24,8 +24,7 @@ class Viewer:
     Attributes:
         may_steer: Whether it may change the run.
         selected: Index of the object whose values it wants; -1: none.
-        column: Name of the values that it wants with each frame; None: none.
-        column_number: Its number, from 1; 0: none.
+        columns: Those whose values it wants with each frame, for colours and for a heat map.
     """
 
     def __init__(self, send: Send, *, may_steer: bool, stall_s: float = math.inf) -> None:
@@ -45,14 +44,13 @@ class Viewer:
         self._told: dict[str, Any] = {}
         self.may_steer = may_steer
         self.selected = -1
-        self.column: str | None = None
-        self.column_number = 0
+        self.columns: tuple[Column, Column] = (NO_COLUMN, NO_COLUMN)
 
     def begin(self, head: dict[str, Any], low: Floats, high: Floats) -> None:
         """Start with a run, perhaps another one than before. `low`, `high`: corners of the box of poses, mm."""
         self._writer = FrameWriter(low, high)
         self._shown, self._late, self._told = 0, None, {}
-        self.selected, self.column, self.column_number = -1, None, 0
+        self.selected, self.columns = -1, (NO_COLUMN, NO_COLUMN)
         self.tell({"kind": "head", "head": head})
 
     def tell(self, message: dict[str, Any] | bytes) -> None:
@@ -80,7 +78,7 @@ class Viewer:
             self._late = look
             return
         self._late, self._sent_at_s = None, now
-        self._send(self._writer.frame(look, self.column, self.column_number))
+        self._send(self._writer.frame(look, self.columns))
 
     def show_late(self) -> None:
         """Send the look that was kept, if the viewer has caught up."""

@@ -1,0 +1,46 @@
+// What can be switched in a view: the inputs of the class `switch` in view.html, each with the name of a key of the section
+// `view` of a configuration, which begins with it. `data-key` is that of the window, where browsers leave it, and the title
+// says what it does in the help. What a run says nothing of begins as in view.html.
+
+class Switches {
+    // root: the document, or a shadow root. shows: becomes what they say, by their names. changed(name): one has changed.
+    constructor(root, shows, changed) {
+        this.inputs = [...root.querySelectorAll(".switch")];
+        Object.assign(this, {shows, changed});
+        for (const input of this.inputs) {
+            input.onchange = () => this.set(input.id, input.type === "checkbox" ? input.checked : input.value);
+        }
+        root.getElementById("switch_keys").replaceChildren(
+            ...this.inputs.filter((input) => input.dataset.key && input.title).flatMap((input) =>
+                [["dt", input.dataset.key], ["dd", input.title]].map(([tag, text]) =>
+                    Object.assign(document.createElement(tag), {textContent: text}))));
+    }
+
+    // value: undefined: as in view.html.
+    set(name, value) {
+        const input = this.inputs.find((own) => own.id === name);
+        if (input.type === "checkbox") {
+            input.checked = this.shows[name] = value ?? input.defaultChecked;
+        } else {
+            const choices = [...input.options].map((option) => option.value);
+            input.value = this.shows[name] = choices.includes(value) ? value : choices[0];
+        }
+        this.changed(name);
+    }
+
+    begin(view) {
+        for (const {id} of this.inputs) this.set(id, view[id]);
+    }
+
+    // Returns what keys do, by the keys: all inputs of a key go the way of its first one.
+    keys() {
+        const press = (key) => {
+            const [first, ...others] = this.inputs.filter((input) => input.dataset.key === key);
+            const next = first.type === "checkbox" ? !first.checked
+                : first.options[(first.selectedIndex + 1) % first.options.length].value;
+            for (const {id} of [first, ...others]) this.set(id, next);
+        };
+        const keys = this.inputs.map((input) => input.dataset.key).filter(Boolean);
+        return Object.fromEntries(keys.map((key) => [key.length === 1 ? key.toLowerCase() : key, () => press(key)]));
+    }
+}
