@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "host/status.hpp"
 #include "render/infrared_ends.hpp"
 #include "render/painter.hpp"
+#include "sim/robot_values.hpp"
 
 using namespace pogosim;
 
@@ -84,7 +86,13 @@ void copy_velocities(Scenery const& scenery, float const* velocity_mm_s, Snapsho
 }
 
 RobotColumn heat_of(RecordedStage const& stage, pogosim_moment const& moment) {
-    RobotColumn heat{.name = stage.view.heat_map, .values = {}, .low = moment.heat_low, .high = moment.heat_high};
+    RobotValue const known = robot_value(stage.view.heat_map);
+    RobotColumn heat{.name = stage.view.heat_map,
+                     .unit = std::string(known.unit),
+                     .is_angle = known.is_angle,
+                     .values = {},
+                     .low = moment.heat_low,
+                     .high = moment.heat_high};
     for (std::size_t i = 0; i < stage.scenery->objects.size(); ++i) {
         if (stage.scenery->objects[i].robot != kNone) {
             heat.values.push_back(moment.heat[i]);

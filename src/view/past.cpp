@@ -14,7 +14,7 @@ std::size_t bytes_of(std::vector<T> const& values) {
 
 std::size_t bytes_of(Moment const& moment) {
     Snapshot const& snapshot = moment.snapshot;
-    std::size_t const columns = (snapshot.colours ? bytes_of(snapshot.colours->values) : 0) +
+    std::size_t const columns = (snapshot.color_by ? bytes_of(snapshot.color_by->values) : 0) +
                                 (snapshot.heat_map ? bytes_of(snapshot.heat_map->values) : 0);
     return sizeof(Moment) + bytes_of(snapshot.position_mm) + bytes_of(snapshot.heading_rad) + bytes_of(snapshot.led) +
            bytes_of(snapshot.lamps) + bytes_of(snapshot.links) + bytes_of(snapshot.body_links) +
