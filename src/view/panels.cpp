@@ -217,15 +217,15 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
     }
     ImGui::SameLine();
     RunStatus const& status = state.status;
-    bool const is_kept = status.no_way_back.empty() && *state.looked_at_s >= status.earliest_s && !status.is_over;
+    bool const is_kept = status.why_no_way_back.empty() && *state.looked_at_s >= status.earliest_s && !status.is_over;
     ImGui::BeginDisabled(!is_kept);
     if (ImGui::Button("Go on from here")) {
         actions.send(GoBack{*state.looked_at_s});
         actions.look_at_now();
     }
     ImGui::EndDisabled();
-    if (!status.no_way_back.empty()) {
-        text(fmt::format("it cannot go back: {}", status.no_way_back));
+    if (!status.why_no_way_back.empty()) {
+        text(fmt::format("it cannot go back: {}", status.why_no_way_back));
     } else if (status.is_over) {
         ImGui::TextUnformatted("the run is over");
     } else if (!is_kept) {
