@@ -18,7 +18,7 @@ typedef struct pogosim_painter pogosim_painter;
 
 /// What does not change during a run. All of it is copied. Objects are in the order of all arrays of a moment.
 struct pogosim_stage {
-    /// YAML, a map of:
+    /// YAML, a map of these keys, of which an unknown one is a mistake:
     ///   view       keys of a configuration that say what pictures show: `view`, and the older show_time and the like
     ///   options    keys of `view` that prevail over these; others are a mistake
     ///   periodic   true: what leaves the box around the outer wall comes back on the other side

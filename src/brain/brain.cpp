@@ -7,6 +7,7 @@ namespace pogosim {
 namespace {
 
 struct SavedBytes final : SavedBrain {
+    std::size_t byte_count() const override { return bytes.size(); }
     std::vector<std::byte> bytes;
 };
 

@@ -34,6 +34,8 @@ RobotRange robots_of(World const& world, std::uint32_t category);
 /// A copy of a brain's state, for Brain::restore().
 struct SavedBrain {
     virtual ~SavedBrain() = default;
+    /// The memory that it takes, about.
+    virtual std::size_t byte_count() const = 0;
 };
 
 class Brain {

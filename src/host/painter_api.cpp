@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -17,7 +17,9 @@
 #include "host/pixels.hpp"
 #include "host/recorded_stage.hpp"
 #include "host/status.hpp"
+#include "render/infrared_ends.hpp"
 #include "render/painter.hpp"
+#include "sim/robot_values.hpp"
 
 using namespace pogosim;
 
@@ -84,7 +86,13 @@ void copy_velocities(Scenery const& scenery, float const* velocity_mm_s, Snapsho
 }
 
 RobotColumn heat_of(RecordedStage const& stage, pogosim_moment const& moment) {
-    RobotColumn heat{.name = stage.view.heat_map, .values = {}, .low = moment.heat_low, .high = moment.heat_high};
+    RobotValue const known = robot_value(stage.view.heat_map);
+    RobotColumn heat{.name = stage.view.heat_map,
+                     .unit = std::string(known.unit),
+                     .is_angle = known.is_angle,
+                     .values = {},
+                     .low = moment.heat_low,
+                     .high = moment.heat_high};
     for (std::size_t i = 0; i < stage.scenery->objects.size(); ++i) {
         if (stage.scenery->objects[i].robot != kNone) {
             heat.values.push_back(moment.heat[i]);
@@ -143,12 +151,10 @@ std::uint32_t rigid_body(Scenery const& scenery, std::uint32_t object) {
     return scenery.objects[object].body;
 }
 
-float reach_of(Scenery const& scenery, Snapshot const& snapshot, std::uint32_t body, Vec2 towards) {
-    float const heading = snapshot.heading_rad[body];
-    Shape const& shape = scenery.body_shape[body];
-    return shape.kind == ShapeKind::disk || !std::isfinite(heading)
-               ? scenery.body_radius_mm[body]
-               : reach(shape, rotate(towards, direction(-heading)));
+LinkedBody linked_body(Scenery const& scenery, Snapshot const& snapshot, std::uint32_t body) {
+    return {.shape = scenery.body_shape[body],
+            .radius_mm = scenery.body_radius_mm[body],
+            .heading_rad = snapshot.heading_rad[body]};
 }
 
 InfraredLink infrared_link(Scenery const& scenery, Snapshot const& snapshot, pogosim_infrared_link const& pair) {
@@ -156,12 +162,12 @@ InfraredLink infrared_link(Scenery const& scenery, Snapshot const& snapshot, pog
     std::uint32_t const to = rigid_body(scenery, pair.listener);
     Vec2 const from_mm = snapshot.position_mm[from];
     Vec2 const span = minimum_image(scenery, from_mm, snapshot.position_mm[to]);
-    float const distance = length(span);
-    Vec2 const along = distance > 0.0F ? (1.0F / distance) * span : Vec2{};
-    return {.from_mm = from_mm + reach_of(scenery, snapshot, from, along) * along,
-            .to_mm = from_mm + span - reach_of(scenery, snapshot, to, -along) * along,
-            .emitters = kAllFaces,
-            .emitters_back = pair.is_mutual != 0 ? kAllFaces : std::uint8_t{0}};
+    InfraredLink link{.from_mm = {},
+                      .to_mm = {},
+                      .emitters = kAllFaces,
+                      .emitters_back = pair.is_mutual != 0 ? kAllFaces : std::uint8_t{0}};
+    place_ends(link, from_mm, linked_body(scenery, snapshot, from), span, linked_body(scenery, snapshot, to));
+    return link;
 }
 
 Snapshot snapshot_of(RecordedStage const& stage, pogosim_moment const& moment) {

@@ -20,6 +20,7 @@ namespace pogosim {
 namespace {
 
 constexpr std::string_view kPath = "description";
+constexpr std::string_view kList = "a list";
 constexpr int kMostCells = 10000;  // of the light map, in a row or a column
 
 enum class Role { body, robot, wall, membrane, robot_membrane };
@@ -86,6 +87,10 @@ std::span<Key<Description> const> description_keys() {
     static std::array const keys{
         K{"periodic", &Description::periodic, any(), "", "No walls."},
         K{"leds", &Description::leds, any(), "", "Colours are those of LEDs."},
+        K{"kinds", Elsewhere{kList}, any(), "", "How objects look."},
+        K{"lamps", Elsewhere{kList}, any(), "", "What each lamp can light."},
+        K{"view", Elsewhere{kMapOfKeysBelow}, any(), "", "Keys of the run's configuration."},
+        K{"options", Elsewhere{kMapOfKeysBelow}, any(), "", "Keys of `view` that prevail over these."},
     };
     return keys;
 }
@@ -113,6 +118,7 @@ std::vector<T> read_each(MapReader const& reader, std::string_view key, Read con
 Description read_description(char const* text) {
     Node const root = parse_yaml(text, std::string(kPath));
     Reading reading;
+    reading.strict_keys = true;
     Description description;
     MapReader reader(root, "", reading);
     reader.read(description_keys(), description);
@@ -125,17 +131,19 @@ Description read_description(char const* text) {
         return shape;
     });
     if (Node const* const view = reader.find("view")) {
+        reading.strict_keys = false;  // it may be a configuration for another version
         MapReader keys(*view, "", reading);
         ViewConfig config;
         read_view(keys, config);
         description.view = config;
+        reading.strict_keys = true;
     }
     if (Node const* const options = reader.find("options")) {
-        reading.strict_keys = true;
         MapReader keys(*options, "view", reading);
         read_view_map(keys, description.view);
         keys.finish();
     }
+    reader.finish();
     reading.problems.throw_if_any();
     return description;
 }

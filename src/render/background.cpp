@@ -34,7 +34,7 @@ PixelBox box_around(std::vector<Polygon> const& polygons_px, float width, PixelB
 
 }  // namespace
 
-void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, Colours const& colours,
+void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, ThemeColours const& colours,
                       bool light_levels) {
     std::shared_ptr<LightMap const> const light = light_levels ? snapshot.light : nullptr;
     std::vector<Pixel> walls = wall_colours(snapshot, colours);
@@ -60,12 +60,12 @@ void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snap
 }
 
 bool Background::is_as_before(Canvas const& canvas, Camera const& camera, Snapshot const& snapshot,
-                              Colours const& colours) const {
+                              ThemeColours const& colours) const {
     return snapshot.scenery == scenery_ && camera == camera_ && colours == colours_ && canvas.size() == empty_.size();
 }
 
 void Background::draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery,
-                            Colours const& colours) {
+                            ThemeColours const& colours) {
     empty_.resize(canvas.size());
     empty_.fill(colours.paper);
     Snapshot const unused;
@@ -174,7 +174,7 @@ void Background::draw_programmed_walls(Camera const& camera, Snapshot const& sna
     }
 }
 
-std::vector<Pixel> Background::wall_colours(Snapshot const& snapshot, Colours const& colours) const {
+std::vector<Pixel> Background::wall_colours(Snapshot const& snapshot, ThemeColours const& colours) const {
     std::vector<Pixel> walls;
     for (Outline const& outline : snapshot.scenery->outlines) {
         walls.push_back(shown_colour(snapshot, colours, snapshot.led[outline.robot][0], colours.dark_wall));

@@ -6,15 +6,15 @@
 
 #include "render/camera.hpp"
 #include "render/canvas.hpp"
-#include "render/colours.hpp"
 #include "render/snapshot.hpp"
+#include "render/theme_colours.hpp"
 
 namespace pogosim {
 
 class Background {
 public:
     /// Fills the whole canvas.
-    void draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, Colours const& colours,
+    void draw(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, ThemeColours const& colours,
               bool light_levels);
 
     /// The place of the floor in the picture drawn last.
@@ -22,16 +22,16 @@ public:
 
 private:
     bool is_as_before(Canvas const& canvas, Camera const& camera, Snapshot const& snapshot,
-                      Colours const& colours) const;
-    void draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery, Colours const& colours);
+                      ThemeColours const& colours) const;
+    void draw_floor(Canvas const& canvas, Camera const& camera, Scenery const& scenery, ThemeColours const& colours);
     void draw_light(Camera const& camera, Scenery const& scenery, LightMap const& light, Pixel lamplight);
     void draw_programmed_walls(Camera const& camera, Snapshot const& snapshot);
-    std::vector<Pixel> wall_colours(Snapshot const& snapshot, Colours const& colours) const;
+    std::vector<Pixel> wall_colours(Snapshot const& snapshot, ThemeColours const& colours) const;
 
     // The state that the picture shows.
     std::shared_ptr<Scenery const> scenery_;
     Camera camera_;
-    Colours colours_;
+    ThemeColours colours_;
     std::shared_ptr<LightMap const> light_;
     std::vector<Pixel> wall_colours_;  // by outline of the scenery
 

@@ -69,7 +69,7 @@ Figure figure_of(Scene const& scene, Object const& object) {
     if (object.robot != kNone) {
         figure.led = &snapshot.led[object.robot];
         figure.colour = body_colour(scene, object.robot);
-        figure.glows = !snapshot.colours && snapshot.shown_rgb.empty() && is_lit((*figure.led)[0]);
+        figure.glows = !snapshot.color_by && snapshot.shown_rgb.empty() && is_lit((*figure.led)[0]);
         auto const& spec = scenery.categories[object.category].spec.robot;
         figure.led_parts = &spec->model.leds;
         figure.leds_turned = spec->rotate_leds_45_deg && are_usual(spec->model.leds);
@@ -209,12 +209,13 @@ void for_each_rigid_object(Scene const& scene, Draw const& draw) {
 }  // namespace
 
 Pixel body_colour(Scene const& scene, std::uint32_t robot) {
-    if (!scene.snapshot.colours) {
+    if (!scene.snapshot.color_by) {
         return shown_colour(scene.snapshot, scene.colours, scene.snapshot.led[robot][0], scene.colours.dark_led);
     }
-    float const value = scene.snapshot.colours->values[robot];
-    ColourKey const key = key_of(*scene.snapshot.colours);
-    return std::isfinite(value) ? key.colour(scene.colours, key.share(value)) : scene.colours.no_led;
+    RobotColumn const& column = *scene.snapshot.color_by;
+    float const value = column.values[robot];
+    ValueScale const scale = scale_of(column);
+    return std::isfinite(value) ? scale.colour(scene.colours, scale.share(value)) : scene.colours.no_led;
 }
 
 void draw_membranes(Scene const& scene) {

@@ -51,7 +51,7 @@ void draw_link(Scene const& scene, BodyLink const& link, Vec2 from_mm, Vec2 to_m
 
 }  // namespace
 
-Pixel tension_colour(Colours const& colours, float load) {
+Pixel tension_colour(ThemeColours const& colours, float load) {
     float const share = std::clamp(std::abs(load), 0.0F, 1.0F);
     return mixed(colours.link_at_rest, load < 0.0F ? colours.link_pushed : colours.link_pulled, share);
 }

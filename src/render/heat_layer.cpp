@@ -1,3 +1,5 @@
+#include "render/heat_layer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -6,8 +8,6 @@
 
 #include "render/between.hpp"
 #include "render/blend.hpp"
-#include "render/heat_field.hpp"
-#include "render/layers.hpp"
 
 namespace pogosim {
 
@@ -27,7 +27,7 @@ float round_up(float value) {
     return static_cast<float>(10.0 * power);
 }
 
-void draw_field(Scene const& scene, HeatField const& field, ColourKey const& key, bool fades) {
+void draw_field(Scene const& scene, HeatField const& field, ValueScale const& scale, bool fades) {
     PictureSize const size = scene.canvas.size();
     PixelBox const clip = intersection(scene.canvas.clip(), scene.floor.box());
     std::vector<Between> columns;
@@ -53,28 +53,50 @@ void draw_field(Scene const& scene, HeatField const& field, ColourKey const& key
                 float const right = std::lerp(above[column.high], below[column.high], row.share);
                 return std::lerp(left, right, column.share);
             };
-            float const share = key.share(at(field.value));
+            float const share = scale.share(at(field.value));
             float const fading = fades ? std::min(share / kFaintShare, 1.0F) : 1.0F;
             float const opacity = kOpacity * fading * at(field.certainty);
-            blend(pixels[x], key.colour(scene.colours, share), opacity * static_cast<float>(floor[x]), 256.0F / 255.0F);
+            blend(pixels[x], scale.colour(scene.colours, share), opacity * static_cast<float>(floor[x]),
+                  256.0F / 255.0F);
         }
     }
 }
 
 }  // namespace
 
-ColourKey draw_heat_map(Scene const& scene) {
+bool HeatLayer::is_up_to_date(Snapshot const& snapshot) const {
+    bool const is_density = !snapshot.heat_map;
+    return scenery_ == snapshot.scenery && position_mm_ == snapshot.position_mm && is_density == is_density_ &&
+           (is_density || (values_ == snapshot.heat_map->values && is_angle_ == snapshot.heat_map->is_angle));
+}
+
+void HeatLayer::update(Snapshot const& snapshot) {
+    if (is_up_to_date(snapshot)) {
+        return;
+    }
+    scenery_ = snapshot.scenery;
+    position_mm_ = snapshot.position_mm;
+    is_density_ = !snapshot.heat_map;
+    if (is_density_) {
+        field_ = density_field(snapshot);
+        return;
+    }
+    values_ = snapshot.heat_map->values;
+    is_angle_ = snapshot.heat_map->is_angle;
+    field_ = (is_angle_ ? mean_angle_field : mean_field)(snapshot, values_);
+}
+
+ColourKey HeatLayer::draw(Scene const& scene) {
     Snapshot const& snapshot = scene.snapshot;
+    update(snapshot);
     if (snapshot.heat_map) {
-        ColourKey const key = key_of(*snapshot.heat_map);
-        auto const& field = key.is_angle ? mean_angle_field : mean_field;
-        draw_field(scene, field(snapshot, snapshot.heat_map->values), key, false);
+        ColourKey key = key_of(*snapshot.heat_map);
+        draw_field(scene, field_, key.scale, false);
         return key;
     }
-    HeatField const field = density_field(snapshot);
-    float const most = *std::ranges::max_element(field.value);
-    ColourKey const key{.name = "robots per m2", .low = 0.0F, .high = most > 0.0F ? round_up(most) : 1.0F};
-    draw_field(scene, field, key, true);
+    float const most = *std::ranges::max_element(field_.value);
+    ColourKey key{.name = "robots per m2", .scale = {.low = 0.0F, .high = most > 0.0F ? round_up(most) : 1.0F}};
+    draw_field(scene, field_, key.scale, true);
     return key;
 }
 

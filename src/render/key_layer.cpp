@@ -27,8 +27,8 @@ int draw_key(Scene const& scene, Text& text, ColourKey const& key, int bottom) {
     int const pad = whole(kNotePad * unit);
     int const gap = whole(kGap * unit);
     int const thick = std::max(whole(kBarWidth * unit), 2);
-    std::string const low = key.is_angle ? "-pi" : number_text(key.low);
-    std::string const high = key.is_angle ? "pi" : number_text(key.high);
+    std::string const low = key.scale.is_angle ? "-pi" : number_text(key.scale.low);
+    std::string const high = key.scale.is_angle ? "pi" : number_text(key.scale.high);
     int const numbers = text.width(low, font) + text.width(high, font) + 3 * gap;
     int const bar = std::max({whole(kBarLength * unit), text.width(key.name, font), numbers});
     int const width = bar + 2 * pad;
@@ -49,7 +49,7 @@ int draw_key(Scene const& scene, Text& text, ColourKey const& key, int bottom) {
                                  {at + 1.0F, static_cast<float>(bar_top)},
                                  {at + 1.0F, static_cast<float>(bar_top + thick)},
                                  {at, static_cast<float>(bar_top + thick)}};
-        scene.canvas.polygon(corners, key.colour(scene.colours, share));
+        scene.canvas.polygon(corners, key.scale.colour(scene.colours, share));
     }
     int const line = bar_top + thick + gap;
     text.draw(scene.canvas, low, font, left + pad, line, ink);
@@ -59,22 +59,23 @@ int draw_key(Scene const& scene, Text& text, ColourKey const& key, int bottom) {
 
 }  // namespace
 
-float ColourKey::share(float value) const {
+float ValueScale::share(float value) const {
     return high > low ? std::clamp((value - low) / (high - low), 0.0F, 1.0F) : 0.5F;
 }
 
-Pixel ColourKey::colour(Colours const& colours, float share) const {
-    return is_angle ? colours.of_angle(std::lerp(low, high, share)) : Colours::of_share(share);
+Pixel ValueScale::colour(ThemeColours const& colours, float share) const {
+    return is_angle ? colours.of_angle(std::lerp(low, high, share)) : ThemeColours::of_share(share);
+}
+
+ValueScale scale_of(RobotColumn const& column) {
+    constexpr float kHalfTurn = std::numbers::pi_v<float>;
+    return column.is_angle ? ValueScale{.low = -kHalfTurn, .high = kHalfTurn, .is_angle = true}
+                           : ValueScale{.low = column.low, .high = column.high};
 }
 
 ColourKey key_of(RobotColumn const& column) {
-    if (column.name == "angle") {
-        return {.name = "angle (rad)",
-                .low = -std::numbers::pi_v<float>,
-                .high = std::numbers::pi_v<float>,
-                .is_angle = true};
-    }
-    return {.name = column.name == "speed" ? "speed (mm/s)" : column.name, .low = column.low, .high = column.high};
+    return {.name = column.unit.empty() ? column.name : fmt::format("{} ({})", column.name, column.unit),
+            .scale = scale_of(column)};
 }
 
 void draw_keys(Scene const& scene, Text& text, std::span<ColourKey const> keys) {

@@ -9,9 +9,6 @@
 
 namespace pogosim {
 
-/// A quantity of robots on the floor: the density of robots, or the mean of a column. Returns what its colours mean.
-ColourKey draw_heat_map(Scene const& scene);
-
 /// Where robots have been, in the colour their head LED had there, fading into the past.
 void draw_trails(Scene const& scene);
 
@@ -38,7 +35,7 @@ void draw_lamps(Scene const& scene, Coverage& scratch);
 void draw_links(Scene const& scene);
 
 /// From -1, pushed, to 1, pulled.
-Pixel tension_colour(Colours const& colours, float load);
+Pixel tension_colour(ThemeColours const& colours, float load);
 
 /// Links between bodies: springs and rods as lines from end to end, hinges as dots, in the colour of their tension.
 void draw_body_links(Scene const& scene);

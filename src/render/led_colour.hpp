@@ -28,7 +28,7 @@ constexpr bool is_lit(Rgb led) {
     return led.r != 0 || led.g != 0 || led.b != 0;
 }
 
-/// The colour of a lit LED, and `dark` for one that is off; see Colours::of_led(), too.
+/// The colour of a lit LED, and `dark` for one that is off; see ThemeColours::of_led(), too.
 constexpr Pixel led_colour(Rgb led, Pixel dark = palette::kDarkLed) {
     auto const channel = [](std::uint8_t value, unsigned shift) { return Pixel{kLedBrightness[value]} << shift; };
     return is_lit(led) ? 0xFF000000U | channel(led.r, 16) | channel(led.g, 8) | channel(led.b, 0) : dark;

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "render/background.hpp"
-#include "render/colours.hpp"
+#include "render/heat_layer.hpp"
 #include "render/layers.hpp"
 #include "render/text.hpp"
+#include "render/theme_colours.hpp"
 
 namespace pogosim {
 
@@ -43,7 +44,7 @@ private:
 
     std::shared_ptr<Trails const> trails_;
     Camera camera_;
-    Colours colours_;
+    ThemeColours colours_;
     PixelBox clip_;
     Canvas layer_{{0, 0}};
 };
@@ -52,6 +53,7 @@ private:
 
 struct Painter::Impl {
     Background background;
+    HeatLayer heat_map;
     TrailLayer trails;
     Text text;
     Coverage scratch;
@@ -86,7 +88,7 @@ Camera camera_for(ViewOptions const& options, Snapshot const& snapshot, PictureS
 
 void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapshot, ViewOptions const& options) {
     canvas.clip_to(canvas.bounds());
-    Colours const colours = colours_for(options);
+    ThemeColours const colours = theme_colours(options);
     impl_->background.draw(canvas, camera, snapshot, colours, options.light_levels);
     Scene const scene{canvas, camera, snapshot, impl_->background.floor(), colours};
     std::vector<ColourKey> keys;
@@ -98,7 +100,7 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
         canvas.clip_to(pixels_of(seams, canvas.bounds()));
     }
     if (options.heat_map == kDensity || snapshot.heat_map) {
-        keys.push_back(draw_heat_map(scene));
+        keys.push_back(impl_->heat_map.draw(scene));
     }
     draw_glows(scene);
     if (options.links == LinkLayer::below) {
@@ -133,8 +135,8 @@ void Painter::paint(Canvas& canvas, Camera const& camera, Snapshot const& snapsh
     if (options.scale_bar) {
         draw_scale_bar(scene, impl_->text);
     }
-    if (snapshot.colours) {
-        keys.push_back(key_of(*snapshot.colours));
+    if (snapshot.color_by) {
+        keys.push_back(key_of(*snapshot.color_by));
     }
     draw_keys(scene, impl_->text, keys);
     if (options.time) {

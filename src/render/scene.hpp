@@ -7,8 +7,8 @@
 
 #include "render/camera.hpp"
 #include "render/canvas.hpp"
-#include "render/colours.hpp"
 #include "render/snapshot.hpp"
+#include "render/theme_colours.hpp"
 
 namespace pogosim {
 
@@ -17,7 +17,7 @@ constexpr Pixel opaque(Rgb colour) {
 }
 
 /// The colour that a picture has for that of a head LED, now or earlier; `dark`: of one that is off.
-inline Pixel shown_colour(Snapshot const& snapshot, Colours const& colours, Rgb led, Pixel dark) {
+inline Pixel shown_colour(Snapshot const& snapshot, ThemeColours const& colours, Rgb led, Pixel dark) {
     return snapshot.shown_rgb.empty() ? colours.of_led(led, dark) : opaque(led);
 }
 
@@ -26,7 +26,7 @@ struct Scene {
     Camera const& camera;
     Snapshot const& snapshot;
     Coverage const& floor;
-    Colours const& colours;
+    ThemeColours const& colours;
 
     Scenery const& scenery() const { return *snapshot.scenery; }
     Vec2 to_pixels(Vec2 point_mm) const { return camera.to_pixels(point_mm, canvas.size()); }

@@ -66,6 +66,8 @@ inline constexpr float kHeardForS = 1.0F;
 /// A value of all robots.
 struct RobotColumn {
     std::string name;
+    std::string unit{};         // empty: it has none, or it is not known
+    bool is_angle = false;      // rad
     std::vector<float> values;  // NaN: it has none
     float low = 0.0F;           // of all values so far
     float high = 0.0F;
@@ -98,9 +100,9 @@ struct Snapshot {
     std::vector<BodyLink> body_links{};
     std::vector<Vec2> velocity_mm_s{};      // of bodies; empty: not wanted
     std::vector<HeardMessage> heard{};      // in the last second; empty: not wanted
-    std::optional<RobotColumn> colours{};   // that bodies have in place of the LEDs'
+    std::optional<RobotColumn> color_by{};  // the value that colours bodies; absent: they have the colours of LEDs
     std::optional<RobotColumn> heat_map{};  // absent: not wanted, or of the density of robots
-    std::vector<Rgb> shown_rgb{};  // of objects, if their colours are none of LEDs, which glow; `led` has those, too
+    std::vector<Rgb> shown_rgb{};  // the colour of each object, shown as it is, without a glow; empty: `led` says it
 };
 
 }  // namespace pogosim

@@ -170,6 +170,9 @@ public:
         std::vector<BoundVariable> bound_variables;
         bool is_restart_due = false;
         bool gave_user_data = false;
+
+        /// The memory that it takes, about.
+        std::size_t byte_count() const;
     };
     Saved save();
     void restore(Saved const& saved);

@@ -35,6 +35,7 @@ namespace {
 
 struct SavedProgram final : SavedBrain {
     explicit SavedProgram(Controllers::Saved state) : controllers(std::move(state)) {}
+    std::size_t byte_count() const override { return controllers.byte_count(); }
     Controllers::Saved controllers;
 };
 

@@ -49,6 +49,19 @@ Controllers::Saved Controllers::save() {
     return saved;
 }
 
+std::size_t Controllers::Saved::byte_count() const {
+    std::size_t bytes = controllers.size() * sizeof(Controller) + user_data.size() + variables.size();
+    if (own_memory) {
+        bytes += own_memory->same.size() + own_memory->other.size() + own_memory->copies.size() +
+                 own_memory->different.size() * sizeof(own_memory->different[0]) +
+                 own_memory->changed.size() * sizeof(own_memory->changed[0]);
+    }
+    for (SavedFiber const& fiber : fibers) {
+        bytes += fiber.stack.size();
+    }
+    return bytes;
+}
+
 void Controllers::restore(Saved const& saved) {
     controllers_ = saved.controllers;
     system_ = saved.system;

@@ -261,13 +261,13 @@ Condition::~Condition() = default;
 Condition::Condition(Condition&&) noexcept = default;
 Condition& Condition::operator=(Condition&&) noexcept = default;
 
-std::optional<std::size_t> Condition::first_robot(RobotValues const& values) const {
-    std::vector<std::vector<float>> of_names;
-    for (std::string const& name : names_) {
-        of_names.push_back(values.of(name));
+std::optional<std::size_t> Condition::first_robot(RobotValues const& values) {
+    values_.resize(names_.size());
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+        values.read(names_[i], values_[i]);
     }
     for (std::size_t robot = 0; robot < values.robot_count(); ++robot) {
-        if (is_true(root_->of(of_names, robot))) {
+        if (is_true(root_->of(values_, robot))) {
             return robot;
         }
     }

@@ -24,13 +24,14 @@ public:
     Condition& operator=(Condition&&) noexcept;
 
     /// The first robot of which it is true. A comparison with a value that is not there is false.
-    std::optional<std::size_t> first_robot(RobotValues const& values) const;
+    std::optional<std::size_t> first_robot(RobotValues const& values);
 
     /// The names in it, each once.
     std::vector<std::string> const& names() const { return names_; }
 
 private:
     std::vector<std::string> names_;
+    std::vector<std::vector<float>> values_;  // by name, then by robot: memory that each step uses again
     std::unique_ptr<ConditionNode const> root_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/infrared_ends.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -18,15 +20,17 @@ float radius_of(World const& world, std::uint32_t robot) {
     return world.bodies.radius_mm[world.robots.body[robot]];
 }
 
-/// The link from rim to rim; for robots that touch or overlap, a point between them.
+LinkedBody body_of(World const& world, std::uint32_t robot) {
+    std::uint32_t const body = world.robots.body[robot];
+    return {.shape = world.bodies.shape[body],
+            .radius_mm = world.bodies.radius_mm[body],
+            .heading_rad = world.bodies.heading_rad[body]};
+}
+
 void place_between_robots(World const& world, InfraredLink& link) {
-    Vec2 const centre = wrapped(world, centre_of(world, link.from));
-    Vec2 const offset = minimum_image(world, centre_of(world, link.from), centre_of(world, link.to));
-    float const from_radius = radius_of(world, link.from);
-    float const to_radius = radius_of(world, link.to);
-    float const distance = std::max(length(offset), from_radius + to_radius);
-    link.from_mm = centre + (from_radius / distance) * offset;
-    link.to_mm = centre + (1.0F - to_radius / distance) * offset;
+    Vec2 const centre_mm = wrapped(world, centre_of(world, link.from));
+    Vec2 const span_mm = minimum_image(world, centre_of(world, link.from), centre_of(world, link.to));
+    place_ends(link, centre_mm, body_of(world, link.from), span_mm, body_of(world, link.to));
 }
 
 }  // namespace

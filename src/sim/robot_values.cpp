@@ -25,18 +25,25 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 /// What the world knows of a body.
 struct OfBody {
     std::string_view name;
+    RobotValue known;
     float (*value)(World const& world, std::uint32_t body);
 };
 
 constexpr std::array kOfBodies{
     OfBody{"speed",
+           {.unit = "mm/s"},
            [](World const& world, std::uint32_t body) { return length(observed_motion(world, body).velocity_mm_s); }},
     OfBody{"x",
+           {.unit = "mm"},
            [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).x; }},
     OfBody{"y",
+           {.unit = "mm"},
            [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).y; }},
-    OfBody{"angle", [](World const& world, std::uint32_t body) { return wrap_angle(world.bodies.heading_rad[body]); }},
+    OfBody{"angle",
+           {.unit = "rad", .is_angle = true},
+           [](World const& world, std::uint32_t body) { return wrap_angle(world.bodies.heading_rad[body]); }},
     OfBody{"light",
+           {},
            [](World const& world, std::uint32_t body) {
                return static_cast<float>(world.light.at(wrapped(world, world.bodies.position_mm[body])));
            }},
@@ -73,15 +80,26 @@ std::vector<std::string> RobotValues::names() const {
     return names;
 }
 
+RobotValue robot_value(std::string_view name) {
+    auto const of_body = std::ranges::find(kOfBodies, name, &OfBody::name);
+    return of_body != kOfBodies.end() ? of_body->known : RobotValue{};
+}
+
 std::vector<float> RobotValues::of(std::string_view name) const {
-    std::vector<float> values(world_.robots.size(), kNoValue);
+    std::vector<float> values;
+    read(name, values);
+    return values;
+}
+
+void RobotValues::read(std::string_view name, std::vector<float>& values) const {
+    values.assign(world_.robots.size(), kNoValue);
     auto const of_body = std::ranges::find(kOfBodies, name, &OfBody::name);
     if (of_body != kOfBodies.end()) {
         for (std::size_t robot = 0; robot < values.size(); ++robot) {
             std::uint32_t const body = world_.robots.body[robot];
             values[robot] = body == kNone ? kNoValue : of_body->value(world_, body);
         }
-        return values;
+        return;
     }
     auto const column = std::ranges::find(columns_.columns(), name, &SavedColumn::name);
     if (column != columns_.columns().end() && column->type != ColumnType::text) {
@@ -91,7 +109,6 @@ std::vector<float> RobotValues::of(std::string_view name) const {
             values[robot] = column->is_absent[robot] != 0 ? kNoValue : static_cast<float>(type.read(place));
         }
     }
-    return values;
 }
 
 bool needs_columns(ViewOptions const& options) {

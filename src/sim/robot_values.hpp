@@ -14,6 +14,13 @@
 
 namespace pogosim {
 
+/// What is known of a value by its name alone.
+struct RobotValue {
+    std::string_view unit{};  // empty: it has none, or it is of the program
+    bool is_angle = false;    // rad
+};
+RobotValue robot_value(std::string_view name);
+
 class RobotValues {
 public:
     /// References outlive this. `columns`: what robots gave at the last save.
@@ -28,6 +35,9 @@ public:
     /// Shape: (robots,); NaN where there is none. All are NaN for an unknown name.
     std::vector<float> of(std::string_view name) const;
 
+    /// The same into an array of any size, whose memory is used again.
+    void read(std::string_view name, std::vector<float>& values) const;
+
 private:
     World const& world_;
     SavedColumns const& columns_;
@@ -36,7 +46,8 @@ private:
 /// Whether pictures or the window need columns of the program.
 bool needs_columns(ViewOptions const& options);
 
-/// Once the columns of the program are known: throws ConfigError if what pictures are to show is none of the values.
+/// Throws ConfigError if the configuration asks pictures for a value, or a robot to follow, that there is not. Call it
+/// once the columns of the program are known.
 void check_shown_values(Scenario const& scenario, World const& world, std::span<ColumnSpec const> columns);
 
 }  // namespace pogosim

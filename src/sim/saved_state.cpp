@@ -7,7 +7,9 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/state_bytes.hpp"
 #include "sim/simulation.hpp"
+#include "world/saved_world.hpp"
 
 namespace pogosim {
 
@@ -53,6 +55,18 @@ std::unique_ptr<SavedState> Simulation::save() {
         saved->brains.push_back(brain->save());
     }
     return saved;
+}
+
+std::size_t bytes_of(SavedState const& saved) {
+    StateWriter changed;
+    append_world(saved.world, changed);
+    saved.physics->append_state(changed);
+    std::size_t const levels = saved.world.light.level.size() * sizeof(saved.world.light.level[0]);
+    std::size_t bytes = sizeof(SavedState) + changed.bytes().size() + levels;
+    for (auto const& brain : saved.brains) {
+        bytes += brain->byte_count();
+    }
+    return bytes;
 }
 
 void Simulation::restore(SavedState const& saved) {

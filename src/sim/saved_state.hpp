@@ -1,6 +1,7 @@
 // A copy of a run between two steps, from which it can go on again and again: Simulation::save() and restore().
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -21,5 +22,8 @@ struct SavedState {
     std::vector<std::unique_ptr<SavedBrain>> brains;  // of Simulation::brains()
     bool stop_requested = false;                      // the program has asked for the end of the run
 };
+
+/// The memory that it takes, about.
+std::size_t bytes_of(SavedState const& saved);
 
 }  // namespace pogosim

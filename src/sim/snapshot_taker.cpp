@@ -61,13 +61,15 @@ std::optional<RobotColumn> SnapshotTaker::column(std::string const& name) {
     if (name.empty()) {
         return std::nullopt;
     }
-    RobotColumn column{.name = name, .values = values_.of(name)};
+    RobotValue const value = robot_value(name);
+    RobotColumn column{
+        .name = name, .unit = std::string(value.unit), .is_angle = value.is_angle, .values = values_.of(name)};
     constexpr float kInfinite = std::numeric_limits<float>::infinity();
     auto& [low, high] = ranges_.try_emplace(name, kInfinite, -kInfinite).first->second;
-    for (float const value : column.values) {
-        if (std::isfinite(value)) {
-            low = std::min(low, value);
-            high = std::max(high, value);
+    for (float const number : column.values) {
+        if (std::isfinite(number)) {
+            low = std::min(low, number);
+            high = std::max(high, number);
         }
     }
     column.low = low <= high ? low : 0.0F;
@@ -88,7 +90,7 @@ Snapshot SnapshotTaker::take(SnapshotParts const& parts) {
                       .links = {},
                       .trails = parts.trails ? std::make_shared<Trails const>(trails_) : nullptr,
                       .body_links = drawn_links(world_),
-                      .colours = column(parts.color_by),
+                      .color_by = column(parts.color_by),
                       .heat_map = column(parts.heat_map)};
     if (parts.velocities) {
         for (std::uint32_t body = 0; body < bodies.size(); ++body) {

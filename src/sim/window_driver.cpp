@@ -97,8 +97,8 @@ void WindowDriver::show_end() {
 
 std::optional<Restart> WindowDriver::restart() {
     if (is_open()) {
-        for (Command const& command : window_->exchange().take_commands()) {
-            if (auto const* const asked = std::get_if<Restart>(&command)) {
+        while (auto const command = window_->exchange().take_command()) {
+            if (auto const* const asked = std::get_if<Restart>(&*command)) {
                 restart_ = *asked;
             }
         }
@@ -132,8 +132,8 @@ void WindowDriver::look_for_its_end() {
 }
 
 std::optional<UserFailure> WindowDriver::carry_out_commands() {
-    for (Command const& command : window_->exchange().take_commands()) {
-        if (auto failure = carry_out(command)) {
+    while (auto const command = window_->exchange().take_command()) {
+        if (auto failure = carry_out(*command)) {
             return failure;
         }
     }
@@ -196,10 +196,14 @@ std::optional<UserFailure> WindowDriver::go_back(double time_s) {
         return failure;
     }
     double const step_s = simulation_.world().time_step_s;
-    while (!failure && simulation_.world().time_s() < time_s - 0.5 * step_s && !simulation_.is_over()) {
+    auto const is_there = [&] { return simulation_.world().time_s() >= time_s - 0.5 * step_s; };
+    while (!failure && !is_there() && !simulation_.is_over() && !window_->exchange().end_is_asked()) {
         failure = simulation_.step();
         simulation_.inspector().note_step();
         taker_.follow_trails();
+    }
+    if (failure || !is_there()) {
+        return failure;  // the user has ended the run meanwhile
     }
     true_of_ = condition_ ? condition_->first_robot(values_) : std::nullopt;
     log().info("went back to t = {:.4f} s", simulation_.world().time_s());
@@ -258,7 +262,7 @@ void WindowDriver::show_if_wanted() {
                       .is_over = shows_end_,
                       .touched = simulation_.is_touched(),
                       .earliest_s = states_.earliest_s(),
-                      .no_way_back = states_.why_none(),
+                      .why_no_way_back = states_.why_no_way_back(),
                       .why_paused = why_paused_,
                       .wrong_condition = wrong_condition_};
     if (request->robot) {

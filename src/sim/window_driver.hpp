@@ -11,9 +11,9 @@
 #include "process/crash_handler.hpp"
 #include "sim/condition.hpp"
 #include "sim/pacer.hpp"
-#include "sim/recent_states.hpp"
 #include "sim/robot_values.hpp"
 #include "sim/snapshot_taker.hpp"
+#include "sim/state_history.hpp"
 #include "sim/window_module.hpp"
 #include "view/exchange.hpp"
 #include "view/messages.hpp"
@@ -57,7 +57,8 @@ private:
     /// Moves the object that the user drags to the mouse.
     void drag();
     void show_if_wanted();
-    /// Takes the run back to a time, step by step from the state before it.
+    /// Takes the run back to a time, step by step from the state before it. The end of the run, or of the window, ends
+    /// the way there.
     std::optional<UserFailure> go_back(double time_s);
     /// Reads the condition to pause by.
     void pause_when(std::string const& condition);
@@ -71,12 +72,12 @@ private:
     std::unique_ptr<OpenWindow> window_;  // null: it has gone
     std::optional<DragObject> dragged_;
     int steps_asked_ = 0;  // while paused
-    RecentStates states_;
+    StateHistory states_;
     RobotValues values_;
     std::optional<Condition> condition_;
     std::string wrong_condition_;
     std::string why_paused_;
-    std::optional<std::size_t> true_of_;  // the robot, when it was looked at last
+    std::optional<std::size_t> true_of_;  // the first robot of which the condition was true after the last step
     bool is_over_ = false;
     bool shows_end_ = false;
     std::optional<Restart> restart_;

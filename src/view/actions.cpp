@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "view/switches.hpp"
+
 namespace pogosim {
 
 namespace {
@@ -18,25 +20,15 @@ struct Binding {
 
 constexpr std::array kBindings{
     Binding{SDLK_F1, Action::help},
-    Binding{SDLK_F2, Action::trails},
     Binding{SDLK_F3, Action::slower},
     Binding{SDLK_F4, Action::faster},
-    Binding{SDLK_F5, Action::links},
-    Binding{SDLK_F6, Action::lateral_leds},
-    Binding{SDLK_F7, Action::light_levels},
-    Binding{SDLK_F8, Action::time_and_scale_bar},
     Binding{SDLK_F9, Action::panels},
     Binding{SDLK_F11, Action::full_screen},
     Binding{SDLK_F12, Action::screenshot},
-    Binding{SDLK_l, Action::labels},
-    Binding{SDLK_v, Action::velocities},
-    Binding{SDLK_h, Action::heard},
-    Binding{SDLK_d, Action::density},
-    Binding{SDLK_t, Action::theme},
     Binding{SDLK_f, Action::follow},
     Binding{SDLK_COMMA, Action::look_back},
     Binding{SDLK_PERIOD, Action::look_forward},
-    Binding{SDLK_END, Action::look_at_now},
+    Binding{SDLK_END, Action::look_at_newest},
     Binding{SDLK_ESCAPE, Action::quit},
     Binding{SDLK_SPACE, Action::pause},
     Binding{SDLK_KP_SPACE, Action::pause},
@@ -61,24 +53,15 @@ constexpr std::array kBindings{
     Binding{SDLK_KP_0, Action::reset_view},
 };
 
-constexpr std::array kHelp{
-    Help{"F1", "show or hide this help"},
-    Help{"Space", "pause, or go on"},
-    Help{"S", "pause and advance by one step"},
-    Help{"F3, F4", "slower, faster"},
-    Help{"R", "restart with the same seed"},
-    Help{"Shift R", "restart with the next seed"},
-    Help{"F2", "trails"},
-    Help{"F5", "communication channels: off, below, above the robots"},
-    Help{"F6", "lateral LEDs"},
-    Help{"F7", "light levels"},
-    Help{"F8", "time and scale bar"},
-    Help{"L, V", "labels of robots, velocities"},
-    Help{"H", "messages heard in the last second"},
-    Help{"D", "heat map of the density of robots"},
+// The help has the switches of the picture between these two.
+constexpr std::array kHelpOfTheRun{
+    Help{"F1", "show or hide this help"},       Help{"Space", "pause, or go on"},
+    Help{"S", "pause and advance by one step"}, Help{"F3, F4", "slower, faster"},
+    Help{"R", "restart with the same seed"},    Help{"Shift R", "restart with the next seed"},
+};
+constexpr std::array kHelpOfTheView{
     Help{"F", "follow the selected robot"},
-    Help{"T", "dark or light"},
-    Help{"comma, period, End", "look at the moment before, after, at now"},
+    Help{"comma, period, End", "look at the moment before, the one after, the newest"},
     Help{"F9", "show or hide the panels"},
     Help{"F11", "full screen"},
     Help{"F12", "save a screenshot"},
@@ -102,8 +85,17 @@ std::optional<Action> action_of(std::int32_t key, bool shift) {
     return std::nullopt;
 }
 
-std::span<Help const> help_lines() {
-    return kHelp;
+std::vector<Help> help_lines() {
+    std::vector<Help> lines(kHelpOfTheRun.begin(), kHelpOfTheRun.end());
+    for (std::span<Switch const> const group : all_switches()) {
+        for (Switch const& one : group) {
+            if (one.key != 0) {
+                lines.push_back({one.key_name, one.effect});
+            }
+        }
+    }
+    lines.insert(lines.end(), kHelpOfTheView.begin(), kHelpOfTheView.end());
+    return lines;
 }
 
 }  // namespace pogosim

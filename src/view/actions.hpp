@@ -1,33 +1,23 @@
-// What keys do in the window, and the help about them.
+// What keys do in the window, but for those of switches.hpp, and the help about all of them.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <span>
+#include <vector>
 
 namespace pogosim {
 
 enum class Action {
     help,
-    trails,
     slower,
     faster,
-    links,
-    lateral_leds,
-    light_levels,
-    time_and_scale_bar,
     panels,
     full_screen,
     screenshot,
-    labels,
-    velocities,
-    heard,
-    density,
-    theme,
     follow,
     look_back,
     look_forward,
-    look_at_now,
+    look_at_newest,
     quit,
     pause,
     step,
@@ -51,7 +41,7 @@ struct Help {
 /// The action of a key, SDL's SDL_Keycode, with or without Shift; letters are those of the keyboard's layout.
 std::optional<Action> action_of(std::int32_t key, bool shift);
 
-/// Keys, then the mouse.
-std::span<Help const> help_lines();
+/// Keys, those of switches too, then the mouse.
+std::vector<Help> help_lines();
 
 }  // namespace pogosim

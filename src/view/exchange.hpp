@@ -6,8 +6,10 @@
 //                ◄── Command: pause, click, drag, quit ─────────
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -41,7 +43,11 @@ public:
 
     /// Waits for the window. The error, empty when it is open; absent when there is no answer in time.
     std::optional<std::string> wait_until_opened(std::chrono::milliseconds longest);
-    std::vector<Command> take_commands();
+    /// The first of the commands that have not been taken; absent: there is none.
+    std::optional<Command> take_command();
+    /// Whether a command that has not been taken ends the run, or the window has ended: a long computation for the
+    /// window may stop.
+    bool end_is_asked() const;
     /// The request since the last call.
     std::optional<MomentRequest> take_request();
     /// Records in a moment that the window has not taken are moved to this one.
@@ -62,7 +68,7 @@ private:
     std::optional<std::string> opened_;  // the error, empty when there is none
     std::optional<WindowEnd> end_;
     std::string error_;
-    std::vector<Command> commands_;
+    std::deque<Command> commands_;
     std::optional<MomentRequest> request_;
     std::shared_ptr<Moment const> moment_;
     bool closing_ = false;
@@ -118,9 +124,21 @@ inline std::optional<std::string> Exchange::wait_until_opened(std::chrono::milli
     return opened_;
 }
 
-inline std::vector<Command> Exchange::take_commands() {
+inline std::optional<Command> Exchange::take_command() {
     std::lock_guard const lock(mutex_);
-    return std::exchange(commands_, {});
+    if (commands_.empty()) {
+        return std::nullopt;
+    }
+    Command command = std::move(commands_.front());
+    commands_.pop_front();
+    return command;
+}
+
+inline bool Exchange::end_is_asked() const {
+    std::lock_guard const lock(mutex_);
+    return end_ || std::ranges::any_of(commands_, [](Command const& command) {
+               return std::holds_alternative<Quit>(command) || std::holds_alternative<Restart>(command);
+           });
 }
 
 inline std::optional<MomentRequest> Exchange::take_request() {

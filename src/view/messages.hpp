@@ -84,9 +84,9 @@ struct RunStatus {
     bool is_over = false;           // its files are complete; the window is still open
     bool touched = false;           // by the user's hand: the run is no longer that of its seed alone
     double earliest_s = 0.0;        // to which it can go back
-    std::string no_way_back{};      // why it cannot go back at all; empty: it can
+    std::string why_no_way_back{};  // empty: it can go back
     std::string why_paused{};       // by a condition: of which robot it is true, and its values
-    std::string wrong_condition{};  // why the condition is none; empty: it is one
+    std::string wrong_condition{};  // the mistake in the condition to pause by; empty: there is none
 };
 
 /// One moment of the run.

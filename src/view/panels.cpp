@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <span>
 
 #include "render/text.hpp"
 #include "view/actions.hpp"
+#include "view/switches.hpp"
 
 namespace pogosim {
 
 namespace {
 
 constexpr float kTextPx = 15.0F;
+constexpr float kPlainTextPx = 13.0F;  // of the font that Dear ImGui has itself
 constexpr float kMarginPx = 10.0F;
 ImVec4 const kWarning{1.0F, 0.66F, 0.25F, 1.0F};
 constexpr ImGuiWindowFlags kFixed =
@@ -55,7 +57,7 @@ std::string speed_text(double speed_up) {
 }
 
 void draw_speed(PanelState const& state, std::function<void(Command const&)> const& send) {
-    RunStatus const& status = state.status;
+    RunStatus const& status = *state.status;
     constexpr float kSlowest = 0.05F;
     constexpr float kFastest = 1000.0F;
     bool unlimited = status.asked_speed_up == 0.0;
@@ -63,7 +65,7 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("speed");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(-66.0F);
+    ImGui::SetNextItemWidth(-ems(4.4F));  // room for "max"
     char const* const format = unlimited ? "no limit" : "%.3g x";
     float shown = unlimited ? kFastest : asked;
     if (ImGui::SliderFloat("##speed", &shown, kSlowest, kFastest, format,
@@ -91,7 +93,7 @@ void draw_speed(PanelState const& state, std::function<void(Command const&)> con
 
 /// A choice among names, the first line standing for none of them.
 void choose(char const* label, char const* none, std::vector<std::string> const& names, std::string& chosen) {
-    ImGui::SetNextItemWidth(112.0F);
+    ImGui::SetNextItemWidth(ems(7.5F));
     if (ImGui::BeginCombo(label, chosen.empty() ? none : chosen.c_str())) {
         if (ImGui::Selectable(none, chosen.empty())) {
             chosen.clear();
@@ -105,23 +107,61 @@ void choose(char const* label, char const* none, std::vector<std::string> const&
     }
 }
 
+/// Gives a text that is being edited the room that it needs.
+int make_room(ImGuiInputTextCallbackData* data) {
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackResize) {
+        auto& text = *static_cast<std::string*>(data->UserData);
+        text.resize(static_cast<std::size_t>(data->BufTextLen));
+        data->Buf = text.data();
+    }
+    return 0;
+}
+
+/// A field for a text of any length. Returns whether Enter was pressed in it.
+bool edit(char const* label, std::string& text) {
+    return ImGui::InputText(label, text.data(), text.capacity() + 1,
+                            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackResize, make_room,
+                            &text);
+}
+
 /// A field for the condition to pause by.
 void draw_condition(PanelState& state, std::function<void(Command const&)> const& send) {
-    constexpr std::size_t kLongest = 256;
-    std::array<char, kLongest> typed{};
-    state.condition.copy(typed.data(), kLongest - 1);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("pause when");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    bool const is_entered =
-        ImGui::InputText("##condition", typed.data(), kLongest, ImGuiInputTextFlags_EnterReturnsTrue);
-    state.condition = typed.data();
+    bool const is_entered = edit("##condition", state.condition);
     if (is_entered || ImGui::IsItemDeactivatedAfterEdit()) {
         send(PauseWhen{state.condition});
     }
-    if (!state.status.wrong_condition.empty()) {
-        text(kWarning, state.status.wrong_condition);
+    if (!state.status->wrong_condition.empty()) {
+        text(kWarning, state.status->wrong_condition);
+    }
+}
+
+void draw_switch(Switch const& one, ViewOptions& options) {
+    if (one.is_beside) {
+        ImGui::SameLine();
+    }
+    int choice = one.get(options);
+    bool is_on = choice != 0;
+    if (one.choices == nullptr) {
+        if (ImGui::Checkbox(one.label, &is_on)) {
+            one.set(options, is_on ? 1 : 0);
+        }
+        return;
+    }
+    ImGui::SetNextItemWidth(ems(6.0F));
+    if (ImGui::Combo(one.label, &choice, one.choices)) {
+        one.set(options, choice);
+    }
+}
+
+void draw_group(std::span<Switch const> switches, ViewOptions& options) {
+    for (Switch const& one : switches) {
+        if (one.label != nullptr) {
+            draw_switch(one, options);
+        }
     }
 }
 
@@ -131,44 +171,22 @@ bool draw_switches(PanelState& state, std::function<void(Command const&)> const&
     if (!ImGui::CollapsingHeader("View")) {
         return false;
     }
-    ImGui::Checkbox("trails", &options.trails);
-    int layer = static_cast<int>(options.links);
-    ImGui::SetNextItemWidth(90.0F);
-    if (ImGui::Combo("channels", &layer, "off\0below\0above\0")) {
-        options.links = static_cast<LinkLayer>(layer);
-    }
-    ImGui::Checkbox("lateral LEDs", &options.lateral_leds);
-    ImGui::Checkbox("light levels", &options.light_levels);
-    bool overlays = options.time || options.scale_bar;
-    if (ImGui::Checkbox("time and scale bar", &overlays)) {
-        options.time = options.scale_bar = overlays;
-    }
+    draw_group(layer_switches(), options);
     ImGui::Checkbox("plot of a data column", &state.plot);
-    ImGui::Checkbox("labels", &options.labels);
-    ImGui::SameLine();
-    ImGui::Checkbox("velocities", &options.velocities);
-    ImGui::Checkbox("messages heard", &options.heard);
+    draw_group(mark_switches(), options);
     choose("colours", "LEDs", state.setup->values, options.color_by);
     std::vector<std::string> maps{kDensity};
     maps.insert(maps.end(), state.setup->values.begin(), state.setup->values.end());
     choose("heat map", "none", maps, options.heat_map);
-    bool is_light = options.theme == Theme::light;
-    if (ImGui::Checkbox("light theme", &is_light)) {
-        options.theme = is_light ? Theme::light : Theme::dark;
-    }
-    ImGui::SameLine();
-    bool is_distinct = options.palette == PaletteKind::color_blind;
-    if (ImGui::Checkbox("colour-blind", &is_distinct)) {
-        options.palette = is_distinct ? PaletteKind::color_blind : PaletteKind::standard;
-    }
+    draw_group(colour_switches(), options);
     draw_condition(state, send);
     return true;
 }
 
-void draw_buttons(PanelState const& state, float scale, PanelActions const& actions) {
-    RunStatus const& status = state.status;
+void draw_buttons(PanelState const& state, PanelActions const& actions) {
+    RunStatus const& status = *state.status;
     ImGui::BeginDisabled(status.is_over);
-    if (ImGui::Button(status.paused && !status.is_over ? "Run" : "Pause", {66.0F * scale, 0.0F})) {
+    if (ImGui::Button(status.paused && !status.is_over ? "Run" : "Pause", {ems(4.4F), 0.0F})) {
         actions.send(Pause{!status.paused});
     }
     ImGui::SameLine();
@@ -213,19 +231,19 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
         return;
     }
     if (ImGui::Button("Now")) {
-        actions.look_at_now();
+        actions.look_at_newest();
     }
     ImGui::SameLine();
-    RunStatus const& status = state.status;
-    bool const is_kept = status.no_way_back.empty() && *state.looked_at_s >= status.earliest_s && !status.is_over;
+    RunStatus const& status = *state.status;
+    bool const is_kept = status.why_no_way_back.empty() && *state.looked_at_s >= status.earliest_s && !status.is_over;
     ImGui::BeginDisabled(!is_kept);
     if (ImGui::Button("Go on from here")) {
         actions.send(GoBack{*state.looked_at_s});
-        actions.look_at_now();
+        actions.look_at_newest();
     }
     ImGui::EndDisabled();
-    if (!status.no_way_back.empty()) {
-        text(fmt::format("it cannot go back: {}", status.no_way_back));
+    if (!status.why_no_way_back.empty()) {
+        text(fmt::format("it cannot go back: {}", status.why_no_way_back));
     } else if (status.is_over) {
         ImGui::TextUnformatted("the run is over");
     } else if (!is_kept) {
@@ -234,20 +252,19 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
 }
 
 /// Returns whether its section "View" is open.
-bool draw_control(PanelState& state, float scale, PanelActions const& actions) {
+bool draw_control(PanelState& state, PanelActions const& actions) {
     WindowSetup const& setup = *state.setup;
-    draw_buttons(state, scale, actions);
+    draw_buttons(state, actions);
     draw_time_line(state, actions);
     draw_past(state, actions);
-    if (state.status.is_over) {
+    if (state.status->is_over) {
         draw_end(actions);
     } else {
         draw_speed(state, actions.send);
     }
-    std::string const seed = fmt::format("seed {}{}", setup.seed, state.status.touched ? ", touched" : "");
+    std::string const seed = fmt::format("seed {}{}", setup.seed, state.status->touched ? ", touched" : "");
     text(seed);
-    float const beside_px =
-        std::max(ImGui::CalcTextSize(seed.c_str()).x + 20.0F * scale, 0.62F * ImGui::GetWindowWidth());
+    float const beside_px = std::max(ImGui::CalcTextSize(seed.c_str()).x + ems(1.3F), 0.62F * ImGui::GetWindowWidth());
     if (beside_px + ImGui::CalcTextSize("F1: help").x < ImGui::GetWindowWidth()) {
         ImGui::SameLine(beside_px);
     }
@@ -347,7 +364,9 @@ Panels::Panels(float scale) : context_(ImGui::CreateContext()), scale_(scale) {
     set_style(scale);
     std::string const font(system_font());
     if (font.empty() || io.Fonts->AddFontFromFileTTF(font.c_str(), kTextPx * scale) == nullptr) {
-        io.Fonts->AddFontDefault();
+        ImFontConfig plain;
+        plain.SizePixels = kPlainTextPx * scale;
+        io.Fonts->AddFontDefault(&plain);
     }
     atlas_ = make_glyph_atlas(*io.Fonts);
 }
@@ -395,7 +414,7 @@ void Panels::draw_all(PanelState& state, PanelActions const& actions) {
     control_is_open_ = begin_panel("Run", layout.control, in_place, nullptr,
                                    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize);
     if (control_is_open_ && state.moment != nullptr) {
-        bool const shows_switches = draw_control(state, scale_, actions);
+        bool const shows_switches = draw_control(state, actions);
         control_px_ = ImGui::GetWindowHeight();
         control_least_px_ = shows_switches ? control_least_px_ : control_px_;
     }
@@ -465,7 +484,7 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state, Pa
     }
     if (!state.message.empty()) {
         draw_message(state.message);
-    } else if (state.status.is_over && !(shows_panels && control_is_open_)) {
+    } else if (state.status->is_over && !(shows_panels && control_is_open_)) {
         draw_message(kEnd);
     }
     ImGui::Render();

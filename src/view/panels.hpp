@@ -18,7 +18,7 @@
 
 namespace pogosim {
 
-/// A step that takes longer is worth a word.
+/// The panel says so when a step takes longer than this.
 inline constexpr double kBusyS = 0.5;
 
 /// Input for the panels.
@@ -45,14 +45,14 @@ struct PanelActions {
     std::function<void()> save_picture;
     std::function<void(RestartAnswer)> answer;
     std::function<void(double time_s)> look_at;  // the moment of that time
-    std::function<void()> look_at_now;
+    std::function<void()> look_at_newest;
 };
 
 /// The state that the panels show and change.
 struct PanelState {
     WindowSetup const* setup = nullptr;
-    Moment const* moment = nullptr;  // null: none yet
-    RunStatus status;                // of the run, or what the user has asked of it since
+    Moment const* moment = nullptr;     // null: none yet
+    RunStatus const* status = nullptr;  // see RunRequests
     ColumnHistory const* history = nullptr;
     ViewOptions* options = nullptr;
     bool help = false;
@@ -103,6 +103,11 @@ private:
     bool inspector_is_open_ = true;
     bool plot_is_open_ = true;
 };
+
+/// A length in the size of the text, pixels, so that it grows with the text.
+inline float ems(float count) {
+    return count * ImGui::GetFontSize();
+}
 
 // What fills panels that are open: inspector_panel.cpp, plot_panel.cpp.
 

@@ -13,7 +13,9 @@ namespace pogosim {
 
 namespace {
 
-constexpr float kAxisPx = 58.0F;  // left of the plot, for numbers
+constexpr float kAxis = 58.0F / 15.0F;  // left of the plot, for numbers, in the size of the text
+constexpr float kGap = 6.0F / 15.0F;
+constexpr float kLineWidth = 1.6F / 15.0F;
 constexpr ImU32 kBand = IM_COL32(90, 150, 230, 70);
 constexpr ImU32 kMean = IM_COL32(110, 170, 245, 255);
 constexpr ImU32 kRobot = IM_COL32(255, 190, 80, 255);
@@ -71,7 +73,8 @@ void draw_line(ImDrawList& list, Frame const& frame, std::vector<double> const& 
     for (std::size_t i = stride; i < times.size(); i += stride) {
         std::size_t const before = i - stride;
         if (std::isfinite(values[before]) && std::isfinite(values[i])) {
-            list.AddLine(frame.at(times[before], values[before]), frame.at(times[i], values[i]), color, 1.6F);
+            list.AddLine(frame.at(times[before], values[before]), frame.at(times[i], values[i]), color,
+                         ems(kLineWidth));
         }
     }
 }
@@ -106,7 +109,7 @@ void draw_axes(ImDrawList& list, Frame const& frame) {
         list.AddLine(left, {frame.max.x, left.y}, kGrid);
         std::string const text = fmt::format("{:.4g}", std::abs(value) < 1e-9 * step ? 0.0 : value);
         float const width = ImGui::CalcTextSize(text.c_str()).x;
-        list.AddText({frame.min.x - width - 6.0F, left.y - 0.5F * ImGui::GetTextLineHeight()}, kInk, text.c_str());
+        list.AddText({frame.min.x - width - ems(kGap), left.y - 0.5F * ImGui::GetTextLineHeight()}, kInk, text.c_str());
     }
     double const step_s = round_step(frame.time_s, kGridLines);
     for (double time = std::ceil(frame.time_s.low / step_s) * step_s; time <= frame.time_s.high; time += step_s) {
@@ -170,7 +173,7 @@ void draw_series(PanelState const& state) {
     }
     ImVec2 const corner = ImGui::GetCursorScreenPos();
     ImVec2 const room = ImGui::GetContentRegionAvail();
-    Frame const frame{.min = {corner.x + kAxisPx, corner.y + 6.0F},
+    Frame const frame{.min = {corner.x + ems(kAxis), corner.y + ems(kGap)},
                       .max = {corner.x + room.x, corner.y + room.y - ImGui::GetTextLineHeight() - 2.0F},
                       .time_s = {times.front(), times.back()},
                       .value = values.widened()};

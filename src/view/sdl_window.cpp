@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kLeastSizePx = 16;
 constexpr float kPlainDotsPerInch = 96.0F;
+constexpr float kMostScale = 3.0F;
 
 /// If no display can be reached, SDL falls back to a driver that draws nowhere, or to a console.
 void check_driver() {
@@ -51,7 +52,8 @@ SdlWindow::SdlWindow(WindowSetup const& setup) {
     int const x = restored ? setup.restored->x_px : static_cast<int>(SDL_WINDOWPOS_UNDEFINED);
     int const y = restored ? setup.restored->y_px : static_cast<int>(SDL_WINDOWPOS_UNDEFINED);
     auto const [width, height] = restored ? setup.restored->size : setup.size;
-    window_.reset(SDL_CreateWindow(setup.title.c_str(), x, y, width, height, SDL_WINDOW_RESIZABLE));
+    window_.reset(
+        SDL_CreateWindow(setup.title.c_str(), x, y, width, height, SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI));
     if (!window_ || SDL_GetWindowSurface(window_.get()) == nullptr) {
         std::string const reason = SDL_GetError();
         window_.reset();
@@ -69,10 +71,22 @@ SdlWindow::SdlWindow(WindowSetup const& setup) {
 // SDL stays: when it leaves the X server it hands errors back to Xlib, which ends the program for the least of them.
 SdlWindow::~SdlWindow() = default;
 
-PictureSize SdlWindow::size() const {
+PictureSize SdlWindow::size_on_desktop() const {
     PictureSize size;
     SDL_GetWindowSize(window_.get(), &size.width_px, &size.height_px);
     return {std::max(size.width_px, 1), std::max(size.height_px, 1)};
+}
+
+PictureSize SdlWindow::size() const {
+    SDL_Surface const* const surface = SDL_GetWindowSurface(window_.get());
+    return surface != nullptr ? PictureSize{std::max(surface->w, 1), std::max(surface->h, 1)} : size_on_desktop();
+}
+
+Vec2 SdlWindow::to_pixels(int x, int y) const {
+    PictureSize const pixels = size();
+    PictureSize const desktop = size_on_desktop();
+    return {static_cast<float>(x) * static_cast<float>(pixels.width_px) / static_cast<float>(desktop.width_px),
+            static_cast<float>(y) * static_cast<float>(pixels.height_px) / static_cast<float>(desktop.height_px)};
 }
 
 bool SdlWindow::is_visible() const {
@@ -115,16 +129,22 @@ void SdlWindow::write_place(WindowState& state) const {
         return;
     }
     SDL_GetWindowPosition(window_.get(), &state.x_px, &state.y_px);
-    state.size = size();
+    state.size = size_on_desktop();
 }
 
 float SdlWindow::text_scale() const {
+    if (float const scale = to_pixels(1, 1).x; scale > 1.0F) {
+        return std::min(scale, kMostScale);
+    }
+    if (char const* const scale = SDL_getenv("GDK_SCALE"); scale != nullptr && SDL_atoi(scale) > 0) {
+        return std::min(static_cast<float>(SDL_atoi(scale)), kMostScale);
+    }
     float dots_per_inch = kPlainDotsPerInch;
     int const display = SDL_GetWindowDisplayIndex(window_.get());
     if (display < 0 || SDL_GetDisplayDPI(display, nullptr, &dots_per_inch, nullptr) != 0) {
         return 1.0F;
     }
-    return std::clamp(std::round(2.0F * dots_per_inch / kPlainDotsPerInch) / 2.0F, 1.0F, 3.0F);
+    return std::clamp(std::round(2.0F * dots_per_inch / kPlainDotsPerInch) / 2.0F, 1.0F, kMostScale);
 }
 
 namespace {

@@ -21,7 +21,12 @@ public:
     SdlWindow(SdlWindow const&) = delete;
     SdlWindow& operator=(SdlWindow const&) = delete;
 
+    /// In pixels of the screen, of which a scaled display has several for each of SDL's.
     PictureSize size() const;
+
+    /// The pixel at a place of SDL's, such as that of a mouse.
+    Vec2 to_pixels(int x, int y) const;
+
     bool is_visible() const;
 
     /// Copies the canvas into the window. Sizes may differ while the window is being resized.
@@ -35,10 +40,14 @@ public:
     /// Writes where it is on the screen, for the next run.
     void write_place(WindowState& state) const;
 
-    /// Pixels of text for each pixel at 96 dots per inch: 1, 1.5, 2, ...
+    /// Pixels of text for each pixel at 96 dots per inch, 1 to 3: by the scale of the desktop (Wayland, macOS; on X11
+    /// GDK_SCALE), else by the dots per inch of the display.
     float text_scale() const;
 
 private:
+    /// In SDL's units, in which windows are placed.
+    PictureSize size_on_desktop() const;
+
     struct DestroyWindow {
         void operator()(SDL_Window* window) const { SDL_DestroyWindow(window); }
     };

@@ -7,19 +7,21 @@
 #include <cmath>
 #include <csetjmp>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "render/png_file.hpp"
 #include "view/actions.hpp"
+#include "view/arena_view.hpp"
 #include "view/column_history.hpp"
 #include "view/module.hpp"
 #include "view/panels.hpp"
-#include "view/past.hpp"
 #include "view/pointer.hpp"
+#include "view/run_requests.hpp"
+#include "view/screenshot.hpp"
 #include "view/sdl_window.hpp"
+#include "view/shown_moment.hpp"
+#include "view/switches.hpp"
 
 namespace pogosim {
 
@@ -35,13 +37,9 @@ constexpr int kPicturesAfterInput = 20;                       // the run answers
 constexpr float kPickMarginPx = 6.0F;
 constexpr float kPanStepPx = 40.0F;
 constexpr float kZoomStep = 1.1F;
+constexpr float kPinchZoom = 4.0F;  // for fingers that part by the width of the window
 constexpr double kSlower = 0.8;
 constexpr double kFaster = 1.2;
-constexpr double kSlowest = 1e-3;  // that the keys ask for
-constexpr double kFastest = 1e6;
-constexpr double kUnlimitedSlower = 10.0;  // speed after "slower" from no limit, simulated seconds per second
-constexpr double kTrailPeriodS = 0.1;      // of simulated time
-constexpr int kMostScreenshots = 10000;
 
 class Window {
 public:
@@ -53,11 +51,13 @@ public:
           canvas_(window_.size()),
           history_(setup.columns.size(), setup.scenery->robot_id.size()),
           options_(setup.restored ? setup.restored->options : setup.options),
-          past_(options_.history_s) {
+          view_(setup.scenery->arena.bounds, canvas_.size()),
+          requests_(exchange, {.paused = setup.restored && setup.restored->paused, .asked_speed_up = setup.speed_up}),
+          moment_(options_.history_s) {
         state_.setup = &setup_;
         state_.history = &history_;
         state_.options = &options_;
-        state_.status = {.paused = setup.restored && setup.restored->paused, .asked_speed_up = setup.speed_up};
+        state_.status = &requests_.status();
         state_.control = setup.restored ? setup.restored->panels : setup.panels;
         if (setup.restored) {
             state_.plot = setup.restored->plot;
@@ -68,11 +68,10 @@ public:
             options_.selected_robot.reset();
         }
         state_.condition = options_.pause_when;
-        show_whole_arena();
         if (setup.restored && setup.restored->camera) {
-            camera_ = *setup.restored->camera;
+            view_.show(*setup.restored->camera);
         } else {
-            zoom(static_cast<float>(options_.zoom), canvas_.size().middle_px());
+            view_.zoom(static_cast<float>(options_.zoom), view_.middle_px());
         }
     }
 
@@ -126,6 +125,10 @@ private:
                     take_typing(event.key.keysym.sym);
                 } else if (state_.question) {
                     answer(event.key.keysym.sym);
+                } else if (Switch const* const one = switch_of(event.key.keysym.sym)) {
+                    if (event.key.repeat == 0) {  // held down, it would flicker
+                        one->press(options_);
+                    }
                 } else if (auto const action =
                                action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
                     carry_out(*action, event.key.repeat != 0);
@@ -141,7 +144,10 @@ private:
                 take_release(event.button);
                 break;
             case SDL_MOUSEMOTION:
-                take_motion({static_cast<float>(event.motion.x), static_cast<float>(event.motion.y)});
+                take_motion(window_.to_pixels(event.motion.x, event.motion.y));
+                break;
+            case SDL_MULTIGESTURE:
+                take_pinch(event.mgesture);
                 break;
             case SDL_WINDOWEVENT:
                 take_window_event(event.window);
@@ -160,13 +166,7 @@ private:
 
     void take_window_event(SDL_WindowEvent const& event) {
         if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-            // The arena stays in the middle; when all of it was shown, all of it is.
-            PictureSize const size = window_.size();
-            bool const was_fitted = is_fitted();
-            canvas_.resize(size);
-            if (was_fitted) {
-                show_whole_arena();
-            }
+            resize();
         } else if (event.event == SDL_WINDOWEVENT_FOCUS_LOST || event.event == SDL_WINDOWEVENT_LEAVE) {
             // The button may be released outside the window.
             if ((SDL_GetGlobalMouseState(nullptr, nullptr) & SDL_BUTTON_LMASK) == 0) {
@@ -176,9 +176,6 @@ private:
     }
 
     void carry_out(Action action, bool is_repeated) {
-        if (past_.empty() && (action == Action::look_back || action == Action::look_forward)) {
-            return;
-        }
         bool const repeats = action == Action::step || action == Action::look_back || action == Action::look_forward ||
                              action == Action::slower || action == Action::faster ||
                              (action >= Action::pan_left && action <= Action::zoom_out);
@@ -189,26 +186,11 @@ private:
             case Action::help:
                 show_help();
                 break;
-            case Action::trails:
-                options_.trails = !options_.trails;
-                break;
             case Action::slower:
-                change_speed(kSlower);
+                requests_.change_speed(kSlower);
                 break;
             case Action::faster:
-                change_speed(kFaster);
-                break;
-            case Action::links:
-                options_.links = static_cast<LinkLayer>((static_cast<int>(options_.links) + 1) % 3);
-                break;
-            case Action::lateral_leds:
-                options_.lateral_leds = !options_.lateral_leds;
-                break;
-            case Action::light_levels:
-                options_.light_levels = !options_.light_levels;
-                break;
-            case Action::time_and_scale_bar:
-                options_.time = options_.scale_bar = !(options_.time || options_.scale_bar);
+                requests_.change_speed(kFaster);
                 break;
             case Action::panels:
                 state_.control = !state_.control;
@@ -217,40 +199,25 @@ private:
                 window_.toggle_full_screen();
                 break;
             case Action::screenshot:
-                save_screenshot();
-                break;
-            case Action::labels:
-                options_.labels = !options_.labels;
-                break;
-            case Action::velocities:
-                options_.velocities = !options_.velocities;
-                break;
-            case Action::heard:
-                options_.heard = !options_.heard;
-                break;
-            case Action::density:
-                options_.heat_map = options_.heat_map.empty() ? kDensity : "";
-                break;
-            case Action::theme:
-                options_.theme = options_.theme == Theme::dark ? Theme::light : Theme::dark;
+                say(save_screenshot(canvas_));
                 break;
             case Action::follow:
                 follow();
                 break;
             case Action::look_back:
-                look_at(past_.neighbour_s(looked_at_s_.value_or(past_.last_s()), -1));
+                look_at_neighbour(-1);
                 break;
             case Action::look_forward:
-                look_at(past_.neighbour_s(looked_at_s_.value_or(past_.last_s()), 1));
+                look_at_neighbour(1);
                 break;
-            case Action::look_at_now:
-                looked_at_s_.reset();
+            case Action::look_at_newest:
+                moment_.look_at_newest();
                 break;
             case Action::quit:
                 quit();
                 break;
             case Action::pause:
-                send(Pause{!state_.status.paused});
+                send(Pause{!requests_.status().paused});
                 break;
             case Action::step:
                 send(StepOnce{});
@@ -274,10 +241,10 @@ private:
                 pan({0.0F, kPanStepPx});
                 break;
             case Action::zoom_in:
-                zoom(kZoomStep, canvas_.size().middle_px());
+                view_.zoom(kZoomStep, view_.middle_px());
                 break;
             case Action::zoom_out:
-                zoom(1.0F / kZoomStep, canvas_.size().middle_px());
+                view_.zoom(1.0F / kZoomStep, view_.middle_px());
                 break;
             case Action::reset_view:
                 reset_view();
@@ -294,32 +261,24 @@ private:
             quit();
             return;
         }
-        bool const needs_the_run = std::holds_alternative<Pause>(command) || std::holds_alternative<StepOnce>(command);
-        if (state_.status.is_over && needs_the_run) {
-            say("the run is over: R runs it again");
+        if (std::string const problem = requests_.send(command); !problem.empty()) {
+            say(problem);
             return;
         }
-        // Until the simulation has answered, the panels show what was requested.
-        if (auto const* const pause = std::get_if<Pause>(&command)) {
-            state_.status.paused = pause->on;
-            looked_at_s_ = pause->on ? looked_at_s_ : std::nullopt;
-        } else if (std::holds_alternative<GoBack>(command)) {
-            state_.status.paused = true;
+        auto const* const pause = std::get_if<Pause>(&command);
+        if ((pause != nullptr && !pause->on) || std::holds_alternative<StepOnce>(command)) {
+            moment_.look_at_newest();
         } else if (auto const* const condition = std::get_if<PauseWhen>(&command)) {
             options_.pause_when = condition->condition;
-        } else if (std::holds_alternative<StepOnce>(command)) {
-            state_.status.paused = true;
-            looked_at_s_.reset();
-        } else if (auto const* const speed = std::get_if<SetSpeedUp>(&command)) {
-            state_.status.asked_speed_up = speed->factor;
         }
-        exchange_.send(command);
     }
 
-    /// Looks at a moment of the past, while the run is paused.
-    void look_at(double time_s) {
-        looked_at_s_ = time_s < past_.last_s() ? std::optional(std::max(time_s, past_.first_s())) : std::nullopt;
-        if (looked_at_s_ && !state_.status.paused && !state_.status.is_over) {
+    void look_at(double time_s) { pause_for_the_past(moment_.look_at(time_s)); }
+    void look_at_neighbour(int direction) { pause_for_the_past(moment_.look_at_neighbour(direction)); }
+
+    /// A run pauses when the user looks at its past.
+    void pause_for_the_past(bool is_past) {
+        if (is_past && !requests_.status().paused && !requests_.status().is_over) {
             send(Pause{true});
         }
     }
@@ -377,12 +336,12 @@ private:
     void restart(std::uint32_t seed, bool overwrite) {
         WindowState state;
         window_.write_place(state);
-        if (!is_fitted()) {
-            state.camera = camera_;
+        if (!view_.shows_all()) {
+            state.camera = view_.camera();
         }
-        state.paused = state_.status.paused;
+        state.paused = requests_.status().paused;
         state.panels = state_.control;
-        state.speed_up = state_.status.asked_speed_up;
+        state.speed_up = requests_.status().asked_speed_up;
         state.options = options_;
         state.plot = state_.plot;
         state.column = state_.column;
@@ -406,35 +365,22 @@ private:
         }
     }
 
-    void change_speed(double factor) {
-        double const asked = state_.status.asked_speed_up;
-        if (asked > 0.0) {
-            send(SetSpeedUp{std::clamp(asked * factor, std::min(asked, kSlowest), std::max(asked, kFastest))});
-        } else if (factor < 1.0) {
-            double const reached = state_.status.speed_up;
-            send(SetSpeedUp{reached > 0.0 ? reached * factor : kUnlimitedSlower});
-        }
-    }
-
     // The view.
 
-    bool is_fitted() const { return camera_ == fitted(setup_.scenery->arena.bounds, canvas_.size()); }
-
-    void show_whole_arena() { camera_ = fitted(setup_.scenery->arena.bounds, canvas_.size()); }
+    void resize() {
+        PictureSize const size = window_.size();
+        canvas_.resize(size);
+        view_.resize(size);
+    }
 
     void reset_view() {
         options_.follow.reset();
-        show_whole_arena();
+        view_.show_all();
     }
 
     void pan(Vec2 motion_px) {
         options_.follow.reset();
-        camera_.centre_mm = camera_.centre_mm + (1.0F / camera_.scale_px_mm) * motion_px;
-    }
-
-    void zoom(float factor, Vec2 fixed_px) {
-        PictureSize const size = canvas_.size();
-        camera_ = zoomed(camera_, factor, fixed_px, size, zoom_limits(setup_.scenery->arena.bounds, size));
+        view_.pan(motion_px);
     }
 
     // The mouse.
@@ -444,12 +390,20 @@ private:
         if (panels_.has_mouse()) {
             wheel_ += lines;
         } else {
-            zoom(std::pow(kZoomStep, lines), mouse_.last().point_px);
+            view_.zoom(std::pow(kZoomStep, lines), mouse_.last().point_px);
         }
     }
 
+    /// Two fingers zoom around the place between them. The first one, for which SDL presses the mouse, lets go.
+    void take_pinch(SDL_MultiGestureEvent const& pinch) {
+        drop();
+        PictureSize const size = canvas_.size();
+        view_.zoom(std::exp(kPinchZoom * pinch.dDist),
+                   {pinch.x * static_cast<float>(size.width_px), pinch.y * static_cast<float>(size.height_px)});
+    }
+
     void take_press(SDL_MouseButtonEvent const& button) {
-        Vec2 const point_px{static_cast<float>(button.x), static_cast<float>(button.y)};
+        Vec2 const point_px = window_.to_pixels(button.x, button.y);
         mouse_.move(point_px);
         if (button.button != SDL_BUTTON_LEFT) {
             if (!panels_.has_mouse()) {
@@ -458,14 +412,14 @@ private:
             return;
         }
         mouse_.set_left(point_px, true);
-        if (panels_.has_mouse() || moment_ == nullptr) {
+        if (panels_.has_mouse() || moment_.newest() == nullptr) {
             return;
         }
-        Snapshot const& snapshot = shown().snapshot;
-        Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
+        Snapshot const& snapshot = moment_.on_screen().snapshot;
+        Vec2 const point_mm = view_.to_mm(point_px);
         Press press;
         press.start_px = point_px;
-        press.object = looked_at_s_ ? std::nullopt : object_at(snapshot, point_mm, 0.0F);
+        press.object = moment_.past_time_s() ? std::nullopt : object_at(snapshot, point_mm, 0.0F);
         if (press.object) {
             Object const& object = snapshot.scenery->objects[*press.object];
             press.grip_mm = centre_of(snapshot, object) - point_mm;
@@ -485,7 +439,7 @@ private:
         Press& press = *pointer_.left;
         press.is_drag = press.is_drag || length(point_px - press.start_px) > kTremblePx;
         if (press.is_drag && press.object) {
-            send(DragObject{*press.object, camera_.to_mm(point_px, canvas_.size()) + press.grip_mm});
+            send(DragObject{*press.object, view_.to_mm(point_px) + press.grip_mm});
         }
     }
 
@@ -494,7 +448,7 @@ private:
             pointer_.panned_from_px.reset();
             return;
         }
-        mouse_.set_left({static_cast<float>(button.x), static_cast<float>(button.y)}, false);
+        mouse_.set_left(window_.to_pixels(button.x, button.y), false);
         if (pointer_.left && !pointer_.left->is_drag) {
             select(pointer_.left->start_px);
         }
@@ -511,11 +465,11 @@ private:
 
     /// The nearest robot, or none; the same one again: none.
     void select(Vec2 point_px) {
-        Vec2 const point_mm = camera_.to_mm(point_px, canvas_.size());
-        auto const robot = robot_at(shown().snapshot, point_mm, kPickMarginPx / camera_.scale_px_mm);
+        float const margin_mm = kPickMarginPx / view_.camera().scale_px_mm;
+        auto const robot = robot_at(moment_.on_screen().snapshot, view_.to_mm(point_px), margin_mm);
         bool const again = robot == options_.selected_robot;
         options_.selected_robot = again ? std::nullopt : robot;
-        if (options_.selected_robot && !looked_at_s_) {
+        if (options_.selected_robot && !moment_.past_time_s()) {
             send(ClickRobot{*options_.selected_robot});
         }
     }
@@ -525,10 +479,7 @@ private:
     void ask() {
         last_asked_ = Clock::now();
         SnapshotParts parts = parts_for(options_);
-        // Drawing trails takes the most time. They are drawn anew before a robot has left the end of its own.
-        double const time_s = moment_ != nullptr ? moment_->snapshot.time_s : 0.0;
-        bool const are_fresh = trails_ != nullptr && time_s - trails_time_s_ < kTrailPeriodS && !state_.status.paused;
-        parts.trails = options_.trails && !are_fresh;
+        parts.trails = options_.trails && (requests_.status().paused || !moment_.has_fresh_trails());
         exchange_.request({.parts = parts, .robot = options_.selected_robot});
     }
 
@@ -542,55 +493,40 @@ private:
         }
         last_moment_ = Clock::now();
         // While the run is paused, only the user changes anything.
-        is_stale_ = is_stale_ || moment_ == nullptr || newest->snapshot.step != moment_->snapshot.step ||
-                    newest->status.touched != moment_->status.touched ||
-                    newest->status.is_over != moment_->status.is_over;
-        if (moment_ != nullptr && newest->status.is_over != moment_->status.is_over) {
+        Moment const* const before = moment_.newest();
+        bool const ends = before != nullptr && newest->status.is_over != before->status.is_over;
+        is_stale_ = is_stale_ || before == nullptr || newest->snapshot.step != before->snapshot.step ||
+                    newest->status.touched != before->status.touched || ends;
+        if (ends) {
             pictures_to_draw_ = kPicturesAfterInput;  // panels settle
         }
-        moment_ = std::make_unique<Moment>(*newest);
-        past_.add(*newest);
-        // Only the user changes these two, and the moment may be from before the simulation has taken notice.
-        RunStatus const asked = state_.status;
-        state_.status = newest->status;
-        // A condition pauses the run, too: once, since the moments that say so may be older than an answer of the user.
-        bool const was_stopped = !newest->status.why_paused.empty() && asked.why_paused.empty();
-        state_.status.paused = asked.paused || was_stopped;
-        state_.status.asked_speed_up = asked.asked_speed_up;
-        Snapshot& snapshot = moment_->snapshot;
-        if (snapshot.trails != nullptr || !options_.trails) {
-            trails_ = snapshot.trails;
-            trails_time_s_ = snapshot.time_s;
-        }
-        snapshot.trails = trails_;
+        moment_.take(*newest, options_.trails);
+        requests_.take(newest->status);
     }
-
-    /// The moment that is looked at, or the newest; there must be one.
-    Moment const& shown() const { return looked_at_ ? *looked_at_ : *moment_; }
 
     /// Finds the moment that is to be drawn.
     void choose_moment() {
-        looked_at_ = looked_at_s_ && !past_.empty() ? past_.at(*looked_at_s_) : nullptr;
-        state_.looked_at_s = looked_at_s_;
-        state_.newest_s = moment_->snapshot.time_s;
-        state_.moment = &shown();
+        moment_.choose();
+        state_.looked_at_s = moment_.past_time_s();
+        state_.newest_s = moment_.newest()->snapshot.time_s;
+        state_.moment = &moment_.on_screen();
         if (options_.follow) {
-            camera_.centre_mm = camera_for(options_, shown().snapshot, canvas_.size()).centre_mm;
+            view_.centre_on(camera_for(options_, moment_.on_screen().snapshot, canvas_.size()).centre_mm);
         }
     }
 
     bool message_is_over(Clock::time_point now) const { return !state_.message.empty() && now > message_until_; }
 
     void draw(Clock::time_point now) {
-        if (moment_ == nullptr) {
+        if (moment_.newest() == nullptr) {
             return;
         }
         if (message_is_over(now)) {
             state_.message.clear();
         }
-        canvas_.resize(window_.size());
+        resize();
         choose_moment();
-        painter_.paint(canvas_, camera_, shown().snapshot, options_);
+        painter_.paint(canvas_, view_.camera(), moment_.on_screen().snapshot, options_);
         PanelInput const input{.mouse = mouse_.take(),
                                .wheel = std::exchange(wheel_, 0.0F),
                                .seconds = std::chrono::duration<float>(now - last_drawn_).count(),
@@ -605,11 +541,11 @@ private:
                       .save_picture = [this] { picture_is_asked_ = true; },
                       .answer = [this](RestartAnswer asked) { answer(asked); },
                       .look_at = [this](double time_s) { look_at(time_s); },
-                      .look_at_now = [this] { looked_at_s_.reset(); }});
+                      .look_at_newest = [this] { moment_.look_at_newest(); }});
         window_.take_text(panels_.wants_text());
         window_.show(canvas_);
         if (std::exchange(picture_is_asked_, false)) {
-            save_screenshot();
+            say(save_screenshot(canvas_));
         }
         is_stale_ = false;
         pictures_to_draw_ = std::max(pictures_to_draw_ - 1, 0);
@@ -621,45 +557,22 @@ private:
         exchange_.send(Note{text});
     }
 
-    void save_screenshot() {
-        namespace fs = std::filesystem;
-        std::error_code error;
-        for (int i = 1; i < kMostScreenshots; ++i) {
-            std::string const name = fmt::format("screenshot-{:03}.png", i);
-            if (fs::exists(name, error)) {
-                continue;
-            }
-            try {
-                write_png(name, canvas_);
-                say(fmt::format("saved {}", fs::absolute(name, error).string()));
-            } catch (std::exception const& problem) {
-                say(fmt::format("the screenshot {} cannot be written: {}", name, problem.what()));
-            }
-            return;
-        }
-        say("no screenshot: there are too many in this folder");
-    }
-
     WindowSetup setup_;
     Exchange& exchange_;
     SdlWindow window_;
     Panels panels_;
     Canvas canvas_;
     Painter painter_;
-    Camera camera_;
     ColumnHistory history_;
     ViewOptions options_;
-    Past past_;
-    std::optional<double> looked_at_s_;        // absent: the newest moment is shown
-    std::shared_ptr<Moment const> looked_at_;  // of that time
-    PanelInput typed_;                         // since the last picture
+    ArenaView view_;
+    RunRequests requests_;
+    ShownMoment moment_;
+    PanelInput typed_;  // since the last picture
     PanelState state_;
     MouseStates mouse_;
     float wheel_ = 0.0F;  // lines up since the last picture, over a panel
     Pointer pointer_;
-    std::unique_ptr<Moment> moment_;        // the newest; null: none yet
-    std::shared_ptr<Trails const> trails_;  // the newest
-    double trails_time_s_ = 0.0;
     bool closed_ = false;
     bool is_stale_ = true;
     bool help_is_logged_ = false;

@@ -513,6 +513,10 @@ def test_stage_that_says_nonsense_is_refused() -> None:
             "view.links: expected",
             Stage({**description, "view": {"view": {"links": "sideways"}}}, square, one, none, none),
         ),
+        (
+            "unknown key 'perodic'; did you mean 'periodic'?",
+            Stage({**description, "perodic": True}, square, one, none, none),
+        ),
     ]
     for said, stage in wrong:
         with pytest.raises(PictureError, match=re.escape(said)):

@@ -310,7 +310,7 @@ TEST(BodyLink, IsDrawnAboveRobotsAndBelowTheirHeadings) {
     snapshot.body_links = {{.from_mm = {500, 500}, .to_mm = {600, 500}, .load = 1.0F}};
     Canvas const canvas = painted(snapshot, kNothingWritten, {1600, 1600});
     EXPECT_EQ(at_mm(canvas, {502, 500}), palette::kLinkPulled);
-    EXPECT_EQ(at_mm(canvas, {515, 500}), Colours{}.contrast_to(led_colour({})));  // where it heads
+    EXPECT_EQ(at_mm(canvas, {515, 500}), ThemeColours{}.contrast_to(led_colour({})));  // where it heads
     EXPECT_EQ(at_mm(canvas, {540, 500}), palette::kLinkPulled);
 }
 

@@ -95,20 +95,20 @@ TEST(Camera, KeepsTheRobotThatIsFollowedInTheMiddle) {
 
 TEST(ColoursByValue, GoFromTheLowestToTheHighestAndNoValueIsGrey) {
     Snapshot snapshot = snapshot_of(world_with({{200, 500}, {500, 500}, {800, 500}}));
-    snapshot.colours = RobotColumn{.name = "heard", .values = {0.0F, 10.0F, kNone}, .low = 0.0F, .high = 10.0F};
+    snapshot.color_by = RobotColumn{.name = "heard", .values = {0.0F, 10.0F, kNone}, .low = 0.0F, .high = 10.0F};
     Canvas const canvas = painted(snapshot, nothing());
-    EXPECT_EQ(at_mm(canvas, {190, 500}), Colours::of_share(0.0F));
-    EXPECT_EQ(at_mm(canvas, {490, 500}), Colours::of_share(1.0F));
+    EXPECT_EQ(at_mm(canvas, {190, 500}), ThemeColours::of_share(0.0F));
+    EXPECT_EQ(at_mm(canvas, {490, 500}), ThemeColours::of_share(1.0F));
     EXPECT_EQ(at_mm(canvas, {790, 500}), palette::kNoLed);
-    std::size_t const key =
-        static_cast<std::size_t>(std::count(canvas.pixels().begin(), canvas.pixels().end(), Colours::of_share(1.0F)));
+    std::size_t const key = static_cast<std::size_t>(
+        std::count(canvas.pixels().begin(), canvas.pixels().end(), ThemeColours::of_share(1.0F)));
     EXPECT_GT(key, 100U);
 }
 
 TEST(ColoursByValue, OfEqualValuesAreInTheMiddle) {
     Snapshot snapshot = snapshot_of(world_with({{200, 500}}));
-    snapshot.colours = RobotColumn{.name = "heard", .values = {3.0F}, .low = 3.0F, .high = 3.0F};
-    EXPECT_EQ(at_mm(painted(snapshot, nothing()), {190, 500}), Colours::of_share(0.5F));
+    snapshot.color_by = RobotColumn{.name = "heard", .values = {3.0F}, .low = 3.0F, .high = 3.0F};
+    EXPECT_EQ(at_mm(painted(snapshot, nothing()), {190, 500}), ThemeColours::of_share(0.5F));
 }
 
 TEST(Velocities, PointToWhereABodyWouldBeAfterASecond) {

@@ -47,6 +47,14 @@ TEST_F(ConditionTest, IsTrueOfTheFirstRobotThatItFits) {
     EXPECT_EQ(first("speed < 1"), 0U);
 }
 
+TEST_F(ConditionTest, IsTrueOfOtherRobotsWhenTheWorldHasChanged) {
+    RobotValues const values(world_, columns_);
+    Condition condition("x > 250", values.names());
+    EXPECT_EQ(condition.first_robot(values), 2U);
+    world_.bodies.position_mm[1].x = 260.0F;
+    EXPECT_EQ(condition.first_robot(values), 1U);
+}
+
 TEST_F(ConditionTest, OperatorsBindAsInArithmetic) {
     EXPECT_EQ(first("x + 2 * y > 299"), 1U);  // 200, 300
     EXPECT_EQ(first("(x + 2) * y == 10100"), 1U);

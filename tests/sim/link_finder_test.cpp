@@ -50,6 +50,20 @@ TEST(Links, TwoRobotsInReachHaveOneLinkForBothDirections) {
     expect_near(links[0].to_mm, {600 - kRadius, 500});
 }
 
+TEST(Links, EndsOfALinkBetweenRectanglesAreOnTheirSides) {
+    World world = square_world();
+    add_robot(world, {500, 500});
+    add_robot(world, {620, 500}, kPi / 2.0F);  // its longer side is across the link
+    for (std::uint32_t const body : {0U, 1U}) {
+        world.bodies.shape[body] = {.kind = ShapeKind::rectangle, .width_mm = 60.0F, .height_mm = 30.0F};
+        world.bodies.radius_mm[body] = bounding_radius(world.bodies.shape[body]);
+    }
+    auto const links = links_of(world, {80, 80});
+    ASSERT_EQ(links.size(), 1U);
+    expect_near(links[0].from_mm, {530, 500});
+    expect_near(links[0].to_mm, {605, 500});
+}
+
 TEST(Links, RobotOfShorterReachOnlyListens) {
     World world = square_world();
     add_robot(world, {600, 500});

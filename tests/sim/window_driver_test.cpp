@@ -161,7 +161,7 @@ TEST_F(WindowDriver, RunGoesBackAndOnFromThereAsItDidBefore) {
                   }
                   double const now_s = look(exchange)->snapshot.time_s;
                   SharedMoment moment = look(exchange);
-                  EXPECT_EQ(moment->status.no_way_back, "");
+                  EXPECT_EQ(moment->status.why_no_way_back, "");
                   EXPECT_LE(moment->status.earliest_s, moment->snapshot.time_s);
                   double const step_s = now_s / static_cast<double>(start + 60);
                   exchange.send(GoBack{static_cast<double>(start + 10) * step_s});
@@ -177,6 +177,23 @@ TEST_F(WindowDriver, RunGoesBackAndOnFromThereAsItDidBefore) {
               ExitCode::done);
 }
 
+TEST_F(WindowDriver, ClosingTheWindowEndsTheWayBackToALaterMomentAtOnce) {
+    ObjectSpec spec = article_robot();
+    spec.robot->brain = ScriptSpec{.entries = {{.time_s = 0.0, .motors = {1023, 1000, std::nullopt}}}};
+    scenario_.objects = {robot_at({200, 500}, spec)};
+    scenario_.view.history_s = 1e6;  // one state, of the beginning, is kept: the way leads to the end of the run
+    image_ = ProgramImage();
+    std::int64_t start = 0;
+    EXPECT_EQ(run_with([&](Exchange& exchange) {
+                  exchange.send(Pause{true});
+                  start = look(exchange)->snapshot.step;
+                  exchange.send(GoBack{scenario_.simulation_time_s});
+                  exchange.send(Quit{});
+              }),
+              ExitCode::done);
+    EXPECT_LT(simulation_->world().step, start + 2);
+}
+
 TEST_F(WindowDriver, RunThatWritesADataFileSaysThatItCannotGoBack) {
     TemporaryFolder const folder;
     scenario_.output.enable_data_logging = true;
@@ -185,7 +202,7 @@ TEST_F(WindowDriver, RunThatWritesADataFileSaysThatItCannotGoBack) {
                   exchange.send(Pause{true});
                   make_steps(exchange, 3);
                   SharedMoment const moment = look(exchange);
-                  EXPECT_EQ(moment->status.no_way_back, "it writes a data file (enable_data_logging: false)");
+                  EXPECT_EQ(moment->status.why_no_way_back, "it writes a data file (enable_data_logging: false)");
                   exchange.send(GoBack{0.0});
                   EXPECT_EQ(look(exchange)->snapshot.step, moment->snapshot.step);
               }),

@@ -3,21 +3,30 @@
 #include <gtest/gtest.h>
 
 #include <thread>
+#include <vector>
 
 namespace pogosim {
 namespace {
 
 using namespace std::chrono_literals;
 
+std::vector<Command> all_commands(Exchange& exchange) {
+    std::vector<Command> commands;
+    while (auto command = exchange.take_command()) {
+        commands.push_back(*command);
+    }
+    return commands;
+}
+
 TEST(Exchange, CommandsComeInTheirOrder) {
     Exchange exchange;
     exchange.send(Pause{true});
     exchange.send(StepOnce{});
-    auto const commands = exchange.take_commands();
+    auto const commands = all_commands(exchange);
     ASSERT_EQ(commands.size(), 2U);
     EXPECT_TRUE(std::holds_alternative<Pause>(commands[0]));
     EXPECT_TRUE(std::holds_alternative<StepOnce>(commands[1]));
-    EXPECT_TRUE(exchange.take_commands().empty());
+    EXPECT_TRUE(all_commands(exchange).empty());
 }
 
 TEST(Exchange, OfADragOnlyTheLastPlaceCounts) {
@@ -25,9 +34,23 @@ TEST(Exchange, OfADragOnlyTheLastPlaceCounts) {
     for (int i = 0; i < 1000; ++i) {
         exchange.send(DragObject{3, {static_cast<float>(i), 0.0F}});
     }
-    auto const commands = exchange.take_commands();
+    auto const commands = all_commands(exchange);
     ASSERT_EQ(commands.size(), 1U);
     EXPECT_EQ(std::get<DragObject>(commands[0]).centre_mm.x, 999.0F);
+}
+
+TEST(Exchange, EndIsAskedForByACommandThatIsNotTakenYetOrByAWindowThatIsGone) {
+    Exchange exchange;
+    exchange.send(Pause{true});
+    EXPECT_FALSE(exchange.end_is_asked());
+    for (Command const& end : {Command{Quit{}}, Command{Restart{}}}) {
+        exchange.send(end);
+        EXPECT_TRUE(exchange.end_is_asked());
+        all_commands(exchange);
+        EXPECT_FALSE(exchange.end_is_asked());
+    }
+    exchange.report_end(WindowEnd::closed, "");
+    EXPECT_TRUE(exchange.end_is_asked());
 }
 
 TEST(Exchange, AMomentIsTakenOnce) {
@@ -57,7 +80,7 @@ TEST(Exchange, ACommandEndsTheWaitOfTheSimulation) {
         exchange.send(Quit{});
     });
     exchange.wait_until(Exchange::Clock::now() + 60s);
-    EXPECT_EQ(exchange.take_commands().size(), 1U);
+    EXPECT_EQ(all_commands(exchange).size(), 1U);
     window.join();
 }
 

@@ -69,8 +69,8 @@ struct PowerCells::Search {
         return candidates[best];
     }
 
-    /// Adds up to kAtATime points, each to the cell of the nearest of the candidates from `first` to `end`. Which that
-    /// is, is found for several points by each instruction; the sums are added up one after the other.
+    /// Adds up to kAtATime points, each to the cell of the nearest of the candidates from `first` to `end`. The nearest
+    /// ones of several points are found at once, by vector instructions; then the points are added one by one.
     void add_points(std::span<Vec2 const> points_mm, std::size_t first, std::size_t end) {
         std::array<float, kAtATime> x_mm;
         std::array<float, kAtATime> y_mm;

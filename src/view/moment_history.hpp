@@ -9,11 +9,11 @@
 
 namespace pogosim {
 
-class Past {
+class MomentHistory {
 public:
     static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
 
-    explicit Past(double longest_s) : longest_s_(longest_s) {}
+    explicit MomentHistory(double longest_s) : longest_s_(longest_s) {}
 
     /// Takes the newest moment, if it is later than those that are kept. One that is earlier follows a step back: what
     /// was after it is forgotten. Trails, which have no times, are left out.

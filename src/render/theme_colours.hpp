@@ -10,7 +10,7 @@
 
 namespace pogosim {
 
-struct Colours {
+struct ThemeColours {
     Pixel paper = palette::kPaper;
     Pixel floor = palette::kFloor;
     Pixel wall = palette::kWall;
@@ -31,7 +31,7 @@ struct Colours {
     Pixel selection_rim = palette::kSelectionRim;
     bool for_colour_blind = false;  // hues of LEDs are replaced, see of_led()
 
-    friend bool operator==(Colours const&, Colours const&) = default;
+    friend bool operator==(ThemeColours const&, ThemeColours const&) = default;
 
     /// The colour of an LED on the screen; `dark`: of one that is off.
     Pixel of_led(Rgb led, Pixel dark) const {
@@ -57,6 +57,6 @@ private:
     static Pixel in_distinct_hue(Pixel colour);
 };
 
-Colours colours_for(ViewOptions const& options);
+ThemeColours theme_colours(ViewOptions const& options);
 
 }  // namespace pogosim

@@ -1,4 +1,4 @@
-#include "render/colours.hpp"
+#include "render/theme_colours.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +75,7 @@ Channels distinct_hue(float hue) {
 
 }  // namespace
 
-Pixel Colours::in_distinct_hue(Pixel colour) {
+Pixel ThemeColours::in_distinct_hue(Pixel colour) {
     Channels const plain = channels_of(colour);
     float const most = std::max({plain[0], plain[1], plain[2]});
     float const saturation = (most - std::min({plain[0], plain[1], plain[2]})) / std::max(most, 1.0F);
@@ -86,13 +86,13 @@ Pixel Colours::in_distinct_hue(Pixel colour) {
     return pixel_of(mixed({most, most, most}, coloured, saturation));
 }
 
-Pixel Colours::contrast_to(Pixel colour) const {
+Pixel ThemeColours::contrast_to(Pixel colour) const {
     auto const [red, green, blue] = channels_of(colour);
     float const luma = 0.299F * red + 0.587F * green + 0.114F * blue;  // ITU-R BT.601
     return luma > 0.25F * 255.0F ? edge : paper;
 }
 
-Pixel Colours::of_text_on(Pixel colour) const {
+Pixel ThemeColours::of_text_on(Pixel colour) const {
     float const below = luminance(colour);
     auto const ratio = [&](Pixel text) {
         float const own = luminance(text);
@@ -101,13 +101,13 @@ Pixel Colours::of_text_on(Pixel colour) const {
     return ratio(paper) > ratio(edge) ? paper : edge;
 }
 
-Pixel Colours::of_share(float share) {
+Pixel ThemeColours::of_share(float share) {
     auto const& map = palette::kColourMap;
     float const within = std::clamp(share, 0.0F, 1.0F);
     return pixel_of(between(map, within * static_cast<float>(map.size() - 1)));
 }
 
-Pixel Colours::of_angle(float angle_rad) const {
+Pixel ThemeColours::of_angle(float angle_rad) const {
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
     float const turns = angle_rad / kTurn - std::floor(angle_rad / kTurn);
     float const hue = std::min(6.0F * turns, 5.9999F);
@@ -119,8 +119,8 @@ Pixel Colours::of_angle(float angle_rad) const {
     return pixel_of(between(kHues, hue));
 }
 
-Colours colours_for(ViewOptions const& options) {
-    Colours colours;
+ThemeColours theme_colours(ViewOptions const& options) {
+    ThemeColours colours;
     if (options.theme == Theme::light) {
         namespace light = palette::light;
         colours.floor = light::kFloor;

@@ -1,4 +1,4 @@
-#include "view/past.hpp"
+#include "view/moment_history.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -14,7 +14,7 @@ std::size_t bytes_of(std::vector<T> const& values) {
 
 std::size_t bytes_of(Moment const& moment) {
     Snapshot const& snapshot = moment.snapshot;
-    std::size_t const columns = (snapshot.colours ? bytes_of(snapshot.colours->values) : 0) +
+    std::size_t const columns = (snapshot.color_by ? bytes_of(snapshot.color_by->values) : 0) +
                                 (snapshot.heat_map ? bytes_of(snapshot.heat_map->values) : 0);
     return sizeof(Moment) + bytes_of(snapshot.position_mm) + bytes_of(snapshot.heading_rad) + bytes_of(snapshot.led) +
            bytes_of(snapshot.lamps) + bytes_of(snapshot.links) + bytes_of(snapshot.body_links) +
@@ -24,7 +24,7 @@ std::size_t bytes_of(Moment const& moment) {
 
 }  // namespace
 
-void Past::add(Moment const& moment) {
+void MomentHistory::add(Moment const& moment) {
     while (!moments_.empty() && moments_.back()->snapshot.step >= moment.snapshot.step) {
         bytes_ -= bytes_of(*moments_.back());
         moments_.pop_back();
@@ -40,17 +40,17 @@ void Past::add(Moment const& moment) {
     }
 }
 
-std::size_t Past::index_at(double time_s) const {
+std::size_t MomentHistory::index_at(double time_s) const {
     auto const after =
         std::ranges::upper_bound(moments_, time_s, {}, [](auto const& moment) { return moment->snapshot.time_s; });
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - moments_.begin() - 1, 0));
 }
 
-std::shared_ptr<Moment const> Past::at(double time_s) const {
+std::shared_ptr<Moment const> MomentHistory::at(double time_s) const {
     return moments_[index_at(time_s)];
 }
 
-double Past::neighbour_s(double time_s, int direction) const {
+double MomentHistory::neighbour_s(double time_s, int direction) const {
     auto const index = static_cast<std::ptrdiff_t>(index_at(time_s)) + direction;
     auto const last = static_cast<std::ptrdiff_t>(moments_.size()) - 1;
     return moments_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(index, 0, last))]->snapshot.time_s;

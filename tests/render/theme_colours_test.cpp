@@ -1,4 +1,4 @@
-#include "render/colours.hpp"
+#include "render/theme_colours.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,11 +69,11 @@ double least_difference(std::vector<Pixel> const& colours) {
     return least;
 }
 
-Colours for_colour_blind() {
-    return colours_for({.palette = PaletteKind::color_blind});
+ThemeColours for_colour_blind() {
+    return theme_colours({.palette = PaletteKind::color_blind});
 }
 
-std::vector<Pixel> led_hues(Colours const& colours) {
+std::vector<Pixel> led_hues(ThemeColours const& colours) {
     std::vector<Pixel> hues;
     for (Rgb const led :
          {Rgb{25, 0, 0}, Rgb{25, 25, 0}, Rgb{0, 25, 0}, Rgb{0, 25, 25}, Rgb{0, 0, 25}, Rgb{25, 0, 25}}) {
@@ -82,34 +82,34 @@ std::vector<Pixel> led_hues(Colours const& colours) {
     return hues;
 }
 
-TEST(Colours, OfLedsAndLinksAreDistinctToEveryoneInThePaletteForTheColourBlind) {
+TEST(ThemeColours, OfLedsAndLinksAreDistinctToEveryoneInThePaletteForTheColourBlind) {
     EXPECT_LT(least_difference(led_hues({})), 12.0);
     EXPECT_GT(least_difference(led_hues(for_colour_blind())), 12.0);
     auto const& links = for_colour_blind().link_by_emitter;
     EXPECT_GT(least_difference({links.begin(), links.end()}), 12.0);
 }
 
-TEST(Colours, OfAnLedKeepItsBrightnessAndSaturationInAnotherHue) {
-    Colours const colours = for_colour_blind();
+TEST(ThemeColours, OfAnLedKeepItsBrightnessAndSaturationInAnotherHue) {
+    ThemeColours const colours = for_colour_blind();
     EXPECT_EQ(colours.of_led({0, 0, 0}), colours.dark_led);
-    EXPECT_EQ(colours.of_led({25, 25, 25}), Colours{}.of_led({25, 25, 25}));  // white has no hue
+    EXPECT_EQ(colours.of_led({25, 25, 25}), ThemeColours{}.of_led({25, 25, 25}));  // white has no hue
     EXPECT_EQ(colours.of_led({25, 0, 0}), palette::color_blind::kLedByHue[0]);
     EXPECT_LT(colours.of_led({5, 0, 0}) >> 16U & 0xFFU, colours.of_led({25, 0, 0}) >> 16U & 0xFFU);
 }
 
-TEST(Colours, OfTheMapGetBrighterAllTheWay) {
+TEST(ThemeColours, OfTheMapGetBrighterAllTheWay) {
     double before = -1.0;
     for (int i = 0; i <= 100; ++i) {
-        double const lightness = lab(linear_rgb(Colours::of_share(static_cast<float>(i) / 100.0F)))[0];
+        double const lightness = lab(linear_rgb(ThemeColours::of_share(static_cast<float>(i) / 100.0F)))[0];
         EXPECT_GT(lightness, before) << i;
         before = lightness;
     }
-    EXPECT_EQ(Colours::of_share(-1.0F), palette::kColourMap.front());
-    EXPECT_EQ(Colours::of_share(2.0F), palette::kColourMap.back());
+    EXPECT_EQ(ThemeColours::of_share(-1.0F), palette::kColourMap.front());
+    EXPECT_EQ(ThemeColours::of_share(2.0F), palette::kColourMap.back());
 }
 
-TEST(Colours, OfAnglesGoRoundTheCircle) {
-    for (Colours const& colours : {Colours{}, for_colour_blind()}) {
+TEST(ThemeColours, OfAnglesGoRoundTheCircle) {
+    for (ThemeColours const& colours : {ThemeColours{}, for_colour_blind()}) {
         EXPECT_EQ(colours.of_angle(0.5F), colours.of_angle(0.5F + 6.2831853F));
         std::set<Pixel> found;
         for (int i = 0; i < 12; ++i) {
@@ -119,9 +119,9 @@ TEST(Colours, OfAnglesGoRoundTheCircle) {
     }
 }
 
-TEST(Colours, OfWritingStandOutInBothThemes) {
+TEST(ThemeColours, OfWritingStandOutInBothThemes) {
     for (Theme const theme : {Theme::dark, Theme::light}) {
-        Colours const colours = colours_for({.theme = theme});
+        ThemeColours const colours = theme_colours({.theme = theme});
         for (Pixel const below :
              {colours.floor, colours.paper, colours.dark_led, colours.no_led, colours.of_led({0, 0, 25})}) {
             Triple const a = lab(linear_rgb(below));
