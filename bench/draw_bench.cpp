@@ -96,7 +96,7 @@ void measure(int robots) {
     Camera const camera = fitted(snapshot.scenery->arena.bounds, kSize);
     Canvas canvas(kSize);
     Background background;
-    Colours const colours;
+    ThemeColours const colours;
     background.draw(canvas, camera, snapshot, colours, false);
     Scene const scene{canvas, camera, snapshot, background.floor(), colours};
     Text text;

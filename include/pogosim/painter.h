@@ -73,7 +73,7 @@ struct pogosim_moment {
     size_t body_link_count;                              ///< springs, rods and hinges that hold
     float const* velocity_mm_s;  ///< shape (objects, 2), for arrows; NaN: it has none; NULL: none has
     float const* heat;  ///< shape (objects): what a heat map of a value shows, NaN: it has none; NULL: none has
-    float heat_low;     ///< the value at which the colours of the heat map begin
+    float heat_low;     ///< the value at which the colours of the heat map begin; NaN: there is no value
     float heat_high;    ///< the value at which they end
 };
 

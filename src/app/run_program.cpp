@@ -313,11 +313,13 @@ Ended simulate(pogosim_program const& program, CommandLine const& options, std::
     auto const begin = std::chrono::steady_clock::now();
     ExitCode const code = simulation->run();
     std::chrono::duration<double> const wall = std::chrono::steady_clock::now() - begin;
-    // A signal that comes while files are being completed ends the program, too, not this run alone.
-    bool const is_interrupted = simulation->crash_handler().was_interrupted();
-    return {code == ExitCode::done && is_interrupted ? ExitCode::interrupted : code,
-            is_interrupted ? std::nullopt : simulation->restart(), simulation->crash_handler().was_left_by_force(),
-            options.quiet ? "" : simulation->summary(wall.count())};
+    Ended ended{code, simulation->restart(), simulation->crash_handler().was_left_by_force(),
+                options.quiet ? "" : simulation->summary(wall.count())};
+    if (ended.restart && simulation->crash_handler().was_interrupted()) {  // while files were being completed, perhaps
+        ended.restart.reset();
+        ended.code = code == ExitCode::done ? ExitCode::interrupted : code;
+    }
+    return ended;
 }
 
 /// Destructors of libraries may crash when memory is short.
@@ -361,7 +363,7 @@ int run_as_told(pogosim_program const& program, int argc, char** argv) {
     if (code == ExitCode::done && !ended.summary.empty()) {
         std::fprintf(stderr, "%s\n", ended.summary.c_str());  // with the progress bar, apart from what robots print
     }
-    if (ended.restart && code == ExitCode::done) {
+    if (ended.restart && (code == ExitCode::done || code == ExitCode::interrupted)) {
         std::fflush(nullptr);
         restart_program(argv, folder, *ended.restart);
         std::fprintf(stderr, "Error: cannot start %s again: %s\n", argv[0], std::strerror(errno));

@@ -139,6 +139,8 @@ std::string key_of(Setting setting) {
             return "magnetometer.csv.file";
         case Setting::message_log:
             return "message_log";
+        case Setting::pause_when:
+            return "view.pause_when";
         case Setting::physics_engine:
             return "physics_engine";
         case Setting::save_data_period:

@@ -28,6 +28,7 @@ enum class Setting {
     magnetometer,
     magnetometer_table,
     message_log,
+    pause_when,
     physics_engine,
     save_data_period,
     speed_up,

@@ -40,10 +40,11 @@ void Background::draw(Canvas& canvas, Camera const& camera, Snapshot const& snap
     std::vector<Pixel> walls = wall_colours(snapshot, colours);
     bool const same_floor = is_as_before(canvas, camera, snapshot, colours);
     if (!same_floor) {
+        scenery_ = nullptr;  // until it is drawn: there may be no memory for it
+        draw_floor(canvas, camera, *snapshot.scenery, colours);
         scenery_ = snapshot.scenery;
         camera_ = camera;
         colours_ = colours;
-        draw_floor(canvas, camera, *scenery_, colours);
     }
     bool const is_plain = !light && walls.empty();
     if (!is_plain && (!same_floor || !is_same_light(light.get(), light_.get()) || walls != wall_colours_)) {

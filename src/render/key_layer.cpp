@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "render/colour_key.hpp"
 #include "render/plate.hpp"
@@ -20,6 +22,15 @@ std::string number_text(float value) {
     return fmt::format("{:.4g}", std::abs(value) < 1e-30F ? 0.0F : value);
 }
 
+/// What stands below both ends of a bar of colours.
+std::pair<std::string, std::string> ends_of(ValueScale const& scale) {
+    if (scale.is_angle) {
+        return {"-pi", "pi"};
+    }
+    return std::isnan(scale.low) ? std::pair<std::string, std::string>("no values", "")
+                                 : std::pair(number_text(scale.low), number_text(scale.high));
+}
+
 /// Draws a key with its lower edge at `bottom`; returns its upper edge.
 int draw_key(Scene const& scene, Text& text, ColourKey const& key, int bottom) {
     float const unit = scene.point_px();
@@ -27,8 +38,7 @@ int draw_key(Scene const& scene, Text& text, ColourKey const& key, int bottom) {
     int const pad = whole(kNotePad * unit);
     int const gap = whole(kGap * unit);
     int const thick = std::max(whole(kBarWidth * unit), 2);
-    std::string const low = key.scale.is_angle ? "-pi" : number_text(key.scale.low);
-    std::string const high = key.scale.is_angle ? "pi" : number_text(key.scale.high);
+    auto const [low, high] = ends_of(key.scale);
     int const numbers = text.width(low, font) + text.width(high, font) + 3 * gap;
     int const bar = std::max({whole(kBarLength * unit), text.width(key.name, font), numbers});
     int const width = bar + 2 * pad;

@@ -71,6 +71,8 @@ constexpr std::array kProducts{Operator{"*", [](float a, float b) { return a * b
                                Operator{"/", [](float a, float b) { return a / b; }}};
 
 constexpr int kDeepest = 100;  // brackets within brackets
+constexpr std::size_t kMostLetters = 1000;
+constexpr std::size_t kShownLetters = 80;  // of a condition that is wrong
 
 Tree node(Operation operation, Tree a, Tree b = nullptr) {
     return std::make_unique<ConditionNode const>(
@@ -84,6 +86,9 @@ public:
         : text_(text), known_(known), names_(names) {}
 
     Tree condition() {
+        if (text_.size() > kMostLetters) {
+            fail(fmt::format("a condition has at most {} characters, found {}", kMostLetters, text_.size()));
+        }
         Tree tree = either();
         if (!at_end()) {
             fail("expected 'and', 'or', an operator or the end");
@@ -243,7 +248,10 @@ private:
     }
 
     [[noreturn]] void fail(std::string const& what) const {
-        throw ConfigError(fmt::format("'{}', character {}: {}", text_, at_ + 1, what));
+        std::size_t const first = at_ - std::min(at_, kShownLetters / 2);
+        throw ConfigError(fmt::format("'{}{}{}', character {}: {}", first > 0 ? "..." : "",
+                                      text_.substr(first, kShownLetters),
+                                      first + kShownLetters < text_.size() ? "..." : "", at_ + 1, what));
     }
 
     std::string_view text_;

@@ -14,6 +14,7 @@
 #include "base/nearest_name.hpp"
 #include "base/utf8.hpp"
 #include "config/places.hpp"
+#include "sim/condition.hpp"
 #include "world/observed_motion.hpp"
 
 namespace pogosim {
@@ -57,14 +58,28 @@ std::vector<std::string> names_of_world() {
     return names;
 }
 
+std::string_view note_on_columns(Scenario const& scenario) {
+    return scenario.output.enable_data_logging ? "" : " (columns of the program need enable_data_logging: true)";
+}
+
 void check_value(Scenario const& scenario, Setting setting, std::string const& name,
                  std::vector<std::string> const& known) {
     if (!name.empty() && std::ranges::find(known, name) == known.end()) {
-        std::string const no_data =
-            scenario.output.enable_data_logging ? "" : "; columns of the program need enable_data_logging: true";
         throw ConfigError(fmt::format("{}: the robots have no value '{}'; expected one of {}{}{}",
-                                      place_of(scenario, setting), name, fmt::join(known, ", "), no_data,
-                                      did_you_mean(name, known)));
+                                      place_of(scenario, setting), name, fmt::join(known, ", "),
+                                      note_on_columns(scenario), did_you_mean(name, known)));
+    }
+}
+
+void check_condition(Scenario const& scenario, std::vector<std::string> const& known) {
+    if (scenario.view.pause_when.empty()) {
+        return;
+    }
+    try {
+        Condition const readable(scenario.view.pause_when, known);
+    } catch (ConfigError const& error) {
+        throw ConfigError(
+            fmt::format("{}: {}{}", place_of(scenario, Setting::pause_when), error.what(), note_on_columns(scenario)));
     }
 }
 
@@ -123,6 +138,7 @@ void check_shown_values(Scenario const& scenario, World const& world, std::span<
         }
     }
     check_value(scenario, Setting::color_by, scenario.view.color_by, known);
+    check_condition(scenario, known);
     known.insert(known.begin(), kDensity);
     check_value(scenario, Setting::heat_map, scenario.view.heat_map, known);
     std::optional<std::uint32_t> const& followed = scenario.view.follow;

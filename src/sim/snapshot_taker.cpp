@@ -65,6 +65,7 @@ std::optional<RobotColumn> SnapshotTaker::column(std::string const& name) {
     RobotColumn column{
         .name = name, .unit = std::string(value.unit), .is_angle = value.is_angle, .values = values_.of(name)};
     constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
     auto& [low, high] = ranges_.try_emplace(name, kInfinite, -kInfinite).first->second;
     for (float const number : column.values) {
         if (std::isfinite(number)) {
@@ -72,8 +73,8 @@ std::optional<RobotColumn> SnapshotTaker::column(std::string const& name) {
             high = std::max(high, number);
         }
     }
-    column.low = low <= high ? low : 0.0F;
-    column.high = low <= high ? high : 0.0F;
+    column.low = low <= high ? low : kNoValue;
+    column.high = low <= high ? high : kNoValue;
     return column;
 }
 

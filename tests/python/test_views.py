@@ -151,6 +151,20 @@ def test_value_that_no_robot_has_is_told_with_those_that_they_have(program: Path
     assert "view.follow: there is no robot 99" in refused(tmp_path, {"follow": 99}, program).errors
 
 
+def test_condition_that_makes_no_sense_is_a_mistake_of_the_configuration(program: Path, tmp_path: Path) -> None:
+    errors = refused(tmp_path, {"pause_when": "herd > 10"}, program).errors
+    assert "scene.yaml:" in errors
+    assert "view.pause_when: 'herd > 10', character 1: there is no value 'herd'" in errors
+    assert "did you mean 'heard'" in errors
+    assert (
+        "view.pause_when: 'x >', character 4: expected a value"
+        in refused(tmp_path, {"pause_when": "x >"}, program).errors
+    )
+    errors = refused(tmp_path, {"pause_when": "heard > 10"}, program, enable_data_logging=False).errors
+    assert "columns of the program need enable_data_logging: true" in errors
+    assert "at most 1000 characters" in refused(tmp_path, {"pause_when": "x" + "+1" * 500}, program).errors
+
+
 @pytest.mark.parametrize(
     ("view", "message"),
     [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import time
 from collections.abc import Mapping
@@ -298,6 +299,25 @@ def test_restart_ends_a_step_that_never_returns(display: Display, window_program
     with shown(display, window_program, tmp_path, settings) as window:
         window.keys("r", "k")
         wait_for(lambda: "restarted with seed 1" in window.text(), "the restart")
+
+
+def test_ctrl_c_while_the_files_of_a_run_are_completed_prevents_its_restart(
+    display: Display, window_program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow = tmp_path / "bin" / "ffmpeg"  # takes its time at the end of a film
+    slow.parent.mkdir()
+    slow.write_text(f"#!/bin/sh\n'{shutil.which('ffmpeg')}' \"$@\"\ncode=$?\ntouch completing\nsleep 4\nexit $code\n")
+    slow.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{slow.parent}:{os.environ['PATH']}")
+    with shown(display, window_program, tmp_path, {**LONG, **FOUR}, ["--video", "run.mp4"]) as window:
+        window.keys("r", "k")
+        wait_for((tmp_path / "completing").exists, "the end of the film")
+        window.process.send_signal(2)
+        code, text = window.end()
+    assert code == 130, text
+    assert "restarted" not in text
+    assert (tmp_path / "run.mp4").exists()
+    assert len(Run(0, "", "", tmp_path).table()) > 0
 
 
 def test_window_stays_open_at_the_end_with_complete_data(

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -314,6 +315,15 @@ TEST(Layer, DrawnOverAPictureIsTheSameAsDrawnIntoIt) {
             ASSERT_NEAR(a, b, 3) << i << ", " << shift;
         }
     }
+}
+
+TEST(Canvas, WithoutMemoryForANewSizeIsEmpty) {
+    constexpr int kMost = std::numeric_limits<int>::max();
+    Canvas canvas({10, 10});
+    EXPECT_THROW(canvas.resize({kMost, kMost}), std::length_error);
+    EXPECT_EQ(canvas.size(), (PictureSize{0, 0}));
+    canvas.resize({20, 5});
+    EXPECT_EQ(canvas.pixels().size(), 100U);
 }
 
 TEST(Canvas, HoldsAWidePicture) {

@@ -162,7 +162,7 @@ class Moments:
     def heat_of(
         self, configuration: Mapping[str, Any], options: Mapping[str, Any]
     ) -> tuple[npt.NDArray[np.float32] | None, tuple[float, float]]:
-        """Values of rows that a heat map shows, shape (rows,), and the least and the greatest.
+        """Values of rows that a heat map shows, shape (rows,), and the least and the greatest; NaN: there is none.
 
         None, and pictures show none, where none is wanted or it is that of the density.
         """
@@ -179,7 +179,7 @@ class Moments:
             return None, (0.0, 0.0)
         values = numbers_of(rows[str(name)])
         known = values[np.isfinite(values)]
-        span = (float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)
+        span = (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan)
         return values.astype(np.float32), span
 
     def wall_of(self, walls: pd.DataFrame, number: int) -> tuple[Floats, Numbers]:
