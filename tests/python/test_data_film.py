@@ -742,6 +742,26 @@ def test_heat_map_of_what_the_file_does_not_have_is_told(tmp_path: Path) -> None
         frames_of(read_recording(path), heat_map="state")
 
 
+@pytest.mark.parametrize("ending", ["gif", "html"])
+def test_films_and_pages_say_the_same_of_what_is_not_there(
+    tmp_path: Path, ending: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "a.feather", walkers(), None, view={"heat_map": "light", "color_by": "herd"})
+    output = str(tmp_path / f"film.{ending}")
+    assert main([str(path), "-o", output]) == 0
+    said = capsys.readouterr().err
+    assert said.count("view.heat_map: the data file has no numbers light") == 1
+    assert said.count("view.color_by: the data file has no column herd") == 1
+    for option, message in (
+        ("heat_map=hoard", "no column hoard; did you mean 'heard'"),
+        ("heat_map=state", "its column state holds no numbers"),
+        ("follow=99", "it has no robot 99 to follow"),
+        ("theme=lite", "theme: expected dark or light"),
+    ):
+        assert main([str(path), "-o", output, "--view", option]) == 2
+        assert message in capsys.readouterr().err
+
+
 def test_robot_to_follow_has_to_be_there(tmp_path: Path) -> None:
     path = write(tmp_path / "a.feather", walkers(3))
     assert frames_of(read_recording(path), follow=2).moments.painter.objects == 3

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -12,22 +11,21 @@ import numpy.typing as npt
 import pandas as pd
 
 from pogosim.arguments import number
-from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.film.painter import HEARD, LINK, LINK_KINDS, Moment, Numbers, Painter, Stage, Trails
-from pogosim.film.shown import shown_by
+from pogosim.film.shown import check_follow, value_of_heat_map
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.film.trails import Trail, TrailOfPlaces, TrailOfSeconds
 from pogosim.periodic import minimum_image
 from pogosim.picture.body_links import placed_links
-from pogosim.picture.colouring import checked_column, holds_numbers, numbers_of
+from pogosim.picture.colouring import numbers_of
 from pogosim.picture.links import box_of, proximity_pairs
 from pogosim.picture.palette import DARK_WALL
 from pogosim.picture.speed import SPEED, with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording
 from pogosim.scene import BRIGHTEST, Kind, bounds, light_levels
 from pogosim.shapes import Floats, Shape
+from pogosim.view.beginning import view_of
 
-DENSITY = "density"  # the heat map of where robots are
 LIGHT_CELLS = 100.0  # columns and rows of the map of light, where a file does not say
 
 SIZES = {
@@ -121,10 +119,9 @@ class Moments:
         part_counts, self.part_order = self.parts_of(self.dots)
         with_parts = set(self.kinds[part_counts[: len(self.kinds)] > 0].tolist())
 
-        runs_program = np.array([kind.runs_program for kind in swarm.kinds])[self.kinds]
-        follow = options.get("follow")
-        if isinstance(follow, int) and follow not in ids[order][runs_program]:
-            raise PictureError(f"it has no robot {follow} to follow")
+        view = view_of(recording.configuration)
+        check_follow(swarm, options)
+        self.heat, self.heat_span = self.heat_of(value_of_heat_map(swarm, view, options))
 
         cells = cells_of(recording.configuration)
         self.light_places = self.centres(cells)
@@ -132,7 +129,7 @@ class Moments:
         self.painter = Painter(
             Stage(
                 {
-                    "view": shown_by(recording.configuration),
+                    "view": {"view": view},
                     "options": dict(options),
                     "periodic": swarm.is_periodic,
                     "leds": self.shows_leds,
@@ -149,7 +146,6 @@ class Moments:
         self.trail: Trail | None = None
         if self.painter.shows("trails"):
             self.trail = TrailOfSeconds(self.line, self.rgb, tail_s) if tail_s else TrailOfPlaces(self.line, self.rgb)
-        self.heat, self.heat_span = self.heat_of(recording.configuration, options)
         talks = np.array([kind.talks for kind in swarm.kinds])[self.kinds]
         self.talkers = np.flatnonzero(talks) if self.painter.shows("links") else None
 
@@ -159,25 +155,17 @@ class Moments:
             return rows["led_rgb"].to_numpy().astype(np.uint32)
         return packed(rows[RGB].to_numpy(dtype=float))
 
-    def heat_of(
-        self, configuration: Mapping[str, Any], options: Mapping[str, Any]
-    ) -> tuple[npt.NDArray[np.float32] | None, tuple[float, float]]:
-        """Values of rows that a heat map shows, shape (rows,), and the least and the greatest; NaN: there is none.
+    def heat_of(self, name: str | None) -> tuple[npt.NDArray[np.float32] | None, tuple[float, float]]:
+        """Return the values of rows for the heat map of a value, shape (rows,), and their least and greatest.
 
-        None, and pictures show none, where none is wanted or it is that of the density.
+        NaN where there is none. None in place of the values if there is no such heat map.
         """
-        name = options.get("heat_map", shown_by(configuration)["view"].get("heat_map", ""))
-        if name in ("", DENSITY):
-            return None, (0.0, 0.0)
+        if name is None:
+            return None, (np.nan, np.nan)
         rows = self.line.rows
         if name == SPEED:
             rows = with_speed(rows, self.swarm.period_mm, self.swarm.top_speed_mm_s)
-        if "heat_map" in options and not holds_numbers(checked_column(rows, str(name))):
-            raise PictureError(f"its column {name} holds no numbers (heat_map)")
-        if name not in rows or not holds_numbers(rows[name]):
-            warnings.warn(f"view.heat_map: the data file has no numbers {name}", MissingColumnWarning, stacklevel=4)
-            return None, (0.0, 0.0)
-        values = numbers_of(rows[str(name)])
+        values = numbers_of(rows[name])
         known = values[np.isfinite(values)]
         span = (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan)
         return values.astype(np.float32), span

@@ -16,7 +16,7 @@ import pandas as pd
 from pogosim.errors import PictureError
 from pogosim.film.first_picture import first_picture
 from pogosim.film.packing import MISSING, Packer, encode_column, hex_colour, quantised
-from pogosim.film.shown import asked_for, check_view
+from pogosim.film.shown import DENSITY, asked_for, check_follow, check_keys, value_of_heat_map
 from pogosim.film.timeline import Timeline, timeline_of
 from pogosim.lines import counted
 from pogosim.outputs import partial_output
@@ -76,7 +76,7 @@ def replay_page(
     """
     asked = asked_for(options)
     if options.view:
-        check_view(recording.last, asked)
+        check_keys(recording.last, asked)
     if options.color_by is not None:
         asked["color_by"] = options.color_by if options.color_by != "led_rgb" else ""
     head, data, picture, warnings = replay_data(recording, span_s, asked)
@@ -136,11 +136,25 @@ def replay_data(
         "membranes": membrane_tables(packer, recording, bodies, span_s),
         "bodyLinks": body_link_data(recording, bodies),
         "palette": PALETTE,
-        "view": {**view_of(recording.configuration), **(asked or {})},
+        "view": view_of_page(recording, asked or {}),
     }
     poses = first_poses(bodies)
     picture = first_picture(head, poses, first_colours(head, base, codes[0]), first_links(recording, bodies, poses))
     return head, packer.packed(), picture, warnings
+
+
+def view_of_page(recording: Recording, asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the page shows first, as keys of the section `view`.
+
+    Raises:
+        PictureError: A robot or value that is asked for is not there.
+    """
+    of_run = view_of(recording.configuration)
+    check_follow(recording.last, asked)
+    view = {**of_run, **asked}
+    if view.get("heat_map", DENSITY) != DENSITY:
+        view["heat_map"] = value_of_heat_map(recording.last, of_run, asked) or ""
+    return view
 
 
 def first_poses(bodies: Timeline) -> npt.NDArray[np.float64]:

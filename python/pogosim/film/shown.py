@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from pogosim.errors import MissingColumnWarning, PictureError
 from pogosim.film.painter import Painter, Stage
-from pogosim.picture.swarm import Swarm
-from pogosim.view.beginning import plain
+from pogosim.picture.colouring import checked_column, holds_numbers
+from pogosim.picture.speed import SPEED
+from pogosim.picture.swarm import Swarm, rows_of_kinds
 
-
-def shown_by(configuration: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a configuration that say what pictures show, but for those that stand for several values."""
-    view = configuration.get("view")
-    older = {key: value for key, value in configuration.items() if key.startswith("show_")}
-    return {**plain(older), "view": plain(view) if isinstance(view, dict) else {}}
+DENSITY = "density"  # the heat map of where robots are
 
 
 def asked_for(options: argparse.Namespace) -> dict[str, Any]:
@@ -28,8 +26,8 @@ def asked_for(options: argparse.Namespace) -> dict[str, Any]:
     return {**keys, **dict(options.view)}
 
 
-def check_view(swarm: Swarm, asked: Mapping[str, Any]) -> None:
-    """Let the painter of films look at keys of the section `view`, for pages, which have none.
+def check_keys(swarm: Swarm, asked: Mapping[str, Any]) -> None:
+    """Check keys of the section `view` for a page, by the simulator's own reader of them.
 
     Raises:
         PictureError: There is no such key, or it takes other values; or the library is missing.
@@ -45,3 +43,39 @@ def check_view(swarm: Swarm, asked: Mapping[str, Any]) -> None:
         "lamps": [],
     }
     Painter(Stage(description, swarm.polygons, none, none, none))
+
+
+def check_follow(swarm: Swarm, asked: Mapping[str, Any]) -> None:
+    """Raise a PictureError if the robot to follow is not there."""
+    robots = swarm.rows["robot_id"][rows_of_kinds(swarm.rows, [kind.runs_program for kind in swarm.kinds])]
+    follow = asked.get("follow")
+    if isinstance(follow, int) and follow not in robots.to_numpy():
+        raise PictureError(f"it has no robot {follow} to follow")
+
+
+def value_of_heat_map(swarm: Swarm, view: Mapping[str, Any], asked: Mapping[str, Any]) -> str | None:
+    """Return the value that the heat map shows: a column of the file, or "speed".
+
+    Args:
+        swarm: The run.
+        view: The section `view` of its configuration.
+        asked: Keys that prevail over these.
+
+    Returns:
+        None if there is no heat map, if it is that of the density, or if the file does not have what the configuration
+        names (MissingColumnWarning).
+
+    Raises:
+        PictureError: What is asked for is not there, or no number.
+    """
+    name = str(asked.get("heat_map", view.get("heat_map", "")))
+    if name in ("", DENSITY):
+        return None
+    if name == SPEED:
+        return name
+    if "heat_map" in asked and not holds_numbers(checked_column(swarm.rows, name)):
+        raise PictureError(f"its column {name} holds no numbers (heat_map)")
+    if name not in swarm.rows or not holds_numbers(swarm.rows[name]):
+        warnings.warn(f"view.heat_map: the data file has no numbers {name}", MissingColumnWarning, stacklevel=3)
+        return None
+    return name

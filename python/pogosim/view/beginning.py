@@ -14,7 +14,7 @@ OLDER = {
 
 
 def view_of(configuration: Mapping[str, Any]) -> dict[str, Any]:
-    """Return keys of the section `view`, but for those that have no value or stand for several; as JSON has them."""
+    """Return the section `view` of a configuration, older keys translated; keys with one value, as JSON has them."""
     view = {name: configuration[older] for older, name in OLDER.items() if isinstance(configuration.get(older), bool)}
     if configuration.get("show_communication_channels") is True:
         view["links"] = "above" if configuration.get("show_communication_channels_above_all") is True else "below"
@@ -23,5 +23,5 @@ def view_of(configuration: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def plain(keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys that have one value."""
+    """Return the keys whose value is a number, a text or a truth value."""
     return {key: value for key, value in keys.items() if isinstance(value, (bool, int, float, str))}
