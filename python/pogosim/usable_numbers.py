@@ -1,4 +1,4 @@
-"""Which values of columns count: with others, sums and colours would overflow."""
+"""Values of columns so large that sums and colours would overflow count as missing."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-# The largest that the window, whose values have 32 bits, can show. Squares of it have room in 64 bits.
+# The largest 32-bit number, as the window has them. Its square still fits into 64 bits.
 LARGEST = float(np.finfo(np.float32).max)
 
 

@@ -86,7 +86,7 @@ void copy_velocities(Scenery const& scenery, float const* velocity_mm_s, Snapsho
 }
 
 RobotColumn heat_of(RecordedStage const& stage, pogosim_moment const& moment) {
-    RobotValue const known = robot_value(stage.view.heat_map);
+    ValueInfo const known = value_info(stage.view.heat_map);
     RobotColumn heat{.name = stage.view.heat_map,
                      .unit = std::string(known.unit),
                      .is_angle = known.is_angle,

@@ -23,7 +23,7 @@ struct ValueScale {
     Pixel colour(ThemeColours const& colours, float share) const;
 };
 
-/// From the least to the greatest value so far; of an angle, one turn.
+/// The range of the column; of an angle, one turn.
 ValueScale scale_of(RobotColumn const& column);
 
 /// A scale, and what a picture writes beside it.

@@ -1,4 +1,4 @@
-// A quantity of robots on the floor, in colours.
+// Heat maps: the density of robots, or the mean of a value, as colours of the floor.
 #pragma once
 
 #include <memory>

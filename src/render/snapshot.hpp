@@ -69,7 +69,7 @@ struct RobotColumn {
     std::string unit{};         // empty: it has none, or it is not known
     bool is_angle = false;      // rad
     std::vector<float> values;  // NaN: it has none
-    float low = 0.0F;           // of all values so far; NaN: there was none
+    float low = 0.0F;           // range of the colours: in a run, of all values so far; NaN: there are none
     float high = 0.0F;
 };
 

@@ -1,4 +1,5 @@
-// The colours of a picture, by theme and palette; all of them come from python/pogosim/palette.json.
+// The colours of a picture, by theme and palette: those of python/pogosim/palette.json, and the circle of hues for
+// directions.
 #pragma once
 
 #include <array>

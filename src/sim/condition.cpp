@@ -30,9 +30,9 @@ struct ConditionNode {
     std::unique_ptr<ConditionNode const> a{};
     std::unique_ptr<ConditionNode const> b{};
 
-    float of(std::vector<std::vector<float>> const& values, std::size_t robot) const {
+    float evaluate(std::vector<std::vector<float>> const& values, std::size_t robot) const {
         if (operation != nullptr) {
-            return operation(a->of(values, robot), b != nullptr ? b->of(values, robot) : 0.0F);
+            return operation(a->evaluate(values, robot), b != nullptr ? b->evaluate(values, robot) : 0.0F);
         }
         return value ? values[*value][robot] : number;
     }
@@ -56,7 +56,7 @@ bool is_true(float value) {
     return value != 0.0F && !std::isnan(value);
 }
 
-// By strength, from the weakest. A sign that is the beginning of another one comes after it.
+// Lowest precedence first. A sign that is the beginning of another one comes after it.
 constexpr std::array kOr{Operator{"or", [](float a, float b) { return truth(is_true(a) || is_true(b)); }}};
 constexpr std::array kAnd{Operator{"and", [](float a, float b) { return truth(is_true(a) && is_true(b)); }}};
 constexpr std::array kComparisons{Operator{"<=", [](float a, float b) { return truth(a <= b); }},
@@ -71,25 +71,25 @@ constexpr std::array kProducts{Operator{"*", [](float a, float b) { return a * b
                                Operator{"/", [](float a, float b) { return a / b; }}};
 
 constexpr int kDeepest = 100;  // brackets within brackets
-constexpr std::size_t kMostLetters = 1000;
-constexpr std::size_t kShownLetters = 80;  // of a condition that is wrong
+constexpr std::size_t kMostCharacters = 1000;
+constexpr std::size_t kShownCharacters = 80;  // of a condition that is wrong
 
 Tree node(Operation operation, Tree a, Tree b = nullptr) {
     return std::make_unique<ConditionNode const>(
         ConditionNode{.operation = operation, .a = std::move(a), .b = std::move(b)});
 }
 
-/// Recursive descent: a function for each strength.
+/// Recursive descent: a function for each precedence.
 class Parser {
 public:
     Parser(std::string_view text, std::vector<std::string> const& known, std::vector<std::string>& names)
         : text_(text), known_(known), names_(names) {}
 
     Tree condition() {
-        if (text_.size() > kMostLetters) {
-            fail(fmt::format("a condition has at most {} characters, found {}", kMostLetters, text_.size()));
+        if (text_.size() > kMostCharacters) {
+            fail(fmt::format("a condition has at most {} characters, found {}", kMostCharacters, text_.size()));
         }
-        Tree tree = either();
+        Tree tree = disjunction();
         if (!at_end()) {
             fail("expected 'and', 'or', an operator or the end");
         }
@@ -97,10 +97,10 @@ public:
     }
 
 private:
-    Tree either() {
-        return chain(kOr, [this] { return both(); });
+    Tree disjunction() {
+        return chain(kOr, [this] { return conjunction(); });
     }
-    Tree both() {
+    Tree conjunction() {
         return chain(kAnd, [this] { return negation(); });
     }
     Tree negation() {
@@ -144,7 +144,7 @@ private:
     }
 
     Tree bracket() {
-        Tree inner = deeper([this] { return either(); });
+        Tree inner = deeper([this] { return disjunction(); });
         if (!take(")")) {
             fail("expected ')'");
         }
@@ -248,10 +248,10 @@ private:
     }
 
     [[noreturn]] void fail(std::string const& what) const {
-        std::size_t const first = at_ - std::min(at_, kShownLetters / 2);
+        std::size_t const first = at_ - std::min(at_, kShownCharacters / 2);
         throw ConfigError(fmt::format("'{}{}{}', character {}: {}", first > 0 ? "..." : "",
-                                      text_.substr(first, kShownLetters),
-                                      first + kShownLetters < text_.size() ? "..." : "", at_ + 1, what));
+                                      text_.substr(first, kShownCharacters),
+                                      first + kShownCharacters < text_.size() ? "..." : "", at_ + 1, what));
     }
 
     std::string_view text_;
@@ -275,7 +275,7 @@ std::optional<std::size_t> Condition::first_robot(RobotValues const& values) {
         values.read(names_[i], values_[i]);
     }
     for (std::size_t robot = 0; robot < values.robot_count(); ++robot) {
-        if (is_true(root_->of(values_, robot))) {
+        if (is_true(root_->evaluate(values_, robot))) {
             return robot;
         }
     }

@@ -16,8 +16,9 @@ struct ConditionNode;
 
 class Condition {
 public:
-    /// `known`: names of values. From the weakest to the strongest: or; and; not; one of < <= > >= == !=; + -; * /; a
-    /// minus; numbers, names, abs(x), and what is in brackets. Throws ConfigError, which says where the text is wrong.
+    /// `known`: names of values. Operators, lowest precedence first: or; and; not; < <= > >= == != (one of them); + -;
+    /// * /; unary minus. Operands: numbers, names, abs(x), brackets. Throws ConfigError, which says where the text is
+    /// wrong.
     Condition(std::string_view text, std::vector<std::string> const& known);
     ~Condition();
     Condition(Condition&&) noexcept;

@@ -27,6 +27,7 @@ LinkedBody body_of(World const& world, std::uint32_t robot) {
             .heading_rad = world.bodies.heading_rad[body]};
 }
 
+/// The ends of a link, on the outlines of both robots.
 void place_between_robots(World const& world, InfraredLink& link) {
     Vec2 const centre_mm = wrapped(world, centre_of(world, link.from));
     Vec2 const span_mm = minimum_image(world, centre_of(world, link.from), centre_of(world, link.to));

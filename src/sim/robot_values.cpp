@@ -24,35 +24,36 @@ namespace {
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// What the world knows of a body.
-struct OfBody {
+struct BodyValue {
     std::string_view name;
-    RobotValue known;
+    ValueInfo known;
     float (*value)(World const& world, std::uint32_t body);
 };
 
-constexpr std::array kOfBodies{
-    OfBody{"speed",
-           {.unit = "mm/s"},
-           [](World const& world, std::uint32_t body) { return length(observed_motion(world, body).velocity_mm_s); }},
-    OfBody{"x",
-           {.unit = "mm"},
-           [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).x; }},
-    OfBody{"y",
-           {.unit = "mm"},
-           [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).y; }},
-    OfBody{"angle",
-           {.unit = "rad", .is_angle = true},
-           [](World const& world, std::uint32_t body) { return wrap_angle(world.bodies.heading_rad[body]); }},
-    OfBody{"light",
-           {},
-           [](World const& world, std::uint32_t body) {
-               return static_cast<float>(world.light.at(wrapped(world, world.bodies.position_mm[body])));
-           }},
+constexpr std::array kBodyValues{
+    BodyValue{
+        "speed",
+        {.unit = "mm/s"},
+        [](World const& world, std::uint32_t body) { return length(observed_motion(world, body).velocity_mm_s); }},
+    BodyValue{"x",
+              {.unit = "mm"},
+              [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).x; }},
+    BodyValue{"y",
+              {.unit = "mm"},
+              [](World const& world, std::uint32_t body) { return wrapped(world, world.bodies.position_mm[body]).y; }},
+    BodyValue{"angle",
+              {.unit = "rad", .is_angle = true},
+              [](World const& world, std::uint32_t body) { return wrap_angle(world.bodies.heading_rad[body]); }},
+    BodyValue{"light",
+              {},
+              [](World const& world, std::uint32_t body) {
+                  return static_cast<float>(world.light.at(wrapped(world, world.bodies.position_mm[body])));
+              }},
 };
 
 std::vector<std::string> names_of_world() {
     std::vector<std::string> names;
-    for (OfBody const& own : kOfBodies) {
+    for (BodyValue const& own : kBodyValues) {
         names.emplace_back(own.name);
     }
     return names;
@@ -95,9 +96,9 @@ std::vector<std::string> RobotValues::names() const {
     return names;
 }
 
-RobotValue robot_value(std::string_view name) {
-    auto const of_body = std::ranges::find(kOfBodies, name, &OfBody::name);
-    return of_body != kOfBodies.end() ? of_body->known : RobotValue{};
+ValueInfo value_info(std::string_view name) {
+    auto const of_body = std::ranges::find(kBodyValues, name, &BodyValue::name);
+    return of_body != kBodyValues.end() ? of_body->known : ValueInfo{};
 }
 
 std::vector<float> RobotValues::of(std::string_view name) const {
@@ -108,8 +109,8 @@ std::vector<float> RobotValues::of(std::string_view name) const {
 
 void RobotValues::read(std::string_view name, std::vector<float>& values) const {
     values.assign(world_.robots.size(), kNoValue);
-    auto const of_body = std::ranges::find(kOfBodies, name, &OfBody::name);
-    if (of_body != kOfBodies.end()) {
+    auto const of_body = std::ranges::find(kBodyValues, name, &BodyValue::name);
+    if (of_body != kBodyValues.end()) {
         for (std::size_t robot = 0; robot < values.size(); ++robot) {
             std::uint32_t const body = world_.robots.body[robot];
             values[robot] = body == kNone ? kNoValue : of_body->value(world_, body);

@@ -15,11 +15,11 @@
 namespace pogosim {
 
 /// What is known of a value by its name alone.
-struct RobotValue {
+struct ValueInfo {
     std::string_view unit{};  // empty: it has none, or it is of the program
     bool is_angle = false;    // rad
 };
-RobotValue robot_value(std::string_view name);
+ValueInfo value_info(std::string_view name);
 
 class RobotValues {
 public:
@@ -43,11 +43,11 @@ private:
     SavedColumns const& columns_;
 };
 
-/// Whether pictures or the window need columns of the program.
+/// Whether pictures may need columns of the program, for colours or a heat map. A window always keeps them.
 bool needs_columns(ViewOptions const& options);
 
-/// Throws ConfigError if the configuration asks pictures for a value, or a robot to follow, that there is not. Call it
-/// once the columns of the program are known.
+/// Throws ConfigError if the section `view` names a value or a robot that does not exist, or its pause_when cannot be
+/// read. Call it once the columns of the program are known.
 void check_shown_values(Scenario const& scenario, World const& world, std::span<ColumnSpec const> columns);
 
 }  // namespace pogosim

@@ -61,7 +61,7 @@ std::optional<RobotColumn> SnapshotTaker::column(std::string const& name) {
     if (name.empty()) {
         return std::nullopt;
     }
-    RobotValue const value = robot_value(name);
+    ValueInfo const value = value_info(name);
     RobotColumn column{
         .name = name, .unit = std::string(value.unit), .is_angle = value.is_angle, .values = values_.of(name)};
     constexpr float kInfinite = std::numeric_limits<float>::infinity();

@@ -52,7 +52,7 @@ std::optional<UserFailure> WindowDriver::wait_for_step() {
             return failure;
         }
         show_if_wanted();
-        look_for_its_end();
+        note_window_end();
         auto const now = Pacer::Clock::now();
         World const& world = simulation_.world();
         bool const may_step = !paused_ || steps_asked_ > 0;
@@ -88,7 +88,7 @@ void WindowDriver::show_end() {
         carry_out_commands();
         show_if_wanted();
         flush_logs_if_due();
-        look_for_its_end();
+        note_window_end();
         if (is_open()) {
             window_->exchange().wait_until(Pacer::Clock::now() + kLookPeriod);
         }
@@ -112,7 +112,7 @@ void WindowDriver::drag() {
     }
 }
 
-void WindowDriver::look_for_its_end() {
+void WindowDriver::note_window_end() {
     auto const end = window_->exchange().end();
     if (!end) {
         return;
@@ -203,7 +203,7 @@ std::optional<UserFailure> WindowDriver::go_back(double time_s) {
         taker_.follow_trails();
     }
     if (failure || !is_there()) {
-        return failure;  // the user has ended the run meanwhile
+        return failure;  // the program has failed, or the run or its window has been ended on the way
     }
     true_of_ = condition_ ? condition_->first_robot(values_) : std::nullopt;
     log().info("went back to t = {:.4f} s", simulation_.world().time_s());

@@ -51,7 +51,7 @@ public:
 
 private:
     bool is_open() const { return window_ != nullptr; }
-    void look_for_its_end();
+    void note_window_end();
     std::optional<UserFailure> carry_out_commands();
     std::optional<UserFailure> carry_out(Command const& command);
     /// Moves the object that the user drags to the mouse.
@@ -83,7 +83,7 @@ private:
     std::optional<Restart> restart_;
 };
 
-/// Sets all but the scenery, the seed and the place, which the run knows.
+/// The part that follows from the configuration; Simulation::open_window() sets the rest.
 WindowSetup window_setup(Scenario const& scenario, World const& world, std::string const& program_name);
 
 }  // namespace pogosim

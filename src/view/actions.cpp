@@ -16,39 +16,41 @@ struct Binding {
     SDL_Keycode key;
     Action action;
     Shift shift = Shift::any;
+    bool repeats = false;  // while the key is held down; a switch would flicker
 };
+constexpr bool kRepeats = true;
 
 constexpr std::array kBindings{
     Binding{SDLK_F1, Action::help},
-    Binding{SDLK_F3, Action::slower},
-    Binding{SDLK_F4, Action::faster},
+    Binding{SDLK_F3, Action::slower, Shift::any, kRepeats},
+    Binding{SDLK_F4, Action::faster, Shift::any, kRepeats},
     Binding{SDLK_F9, Action::panels},
     Binding{SDLK_F11, Action::full_screen},
     Binding{SDLK_F12, Action::screenshot},
     Binding{SDLK_f, Action::follow},
-    Binding{SDLK_COMMA, Action::look_back},
-    Binding{SDLK_PERIOD, Action::look_forward},
+    Binding{SDLK_COMMA, Action::look_back, Shift::any, kRepeats},
+    Binding{SDLK_PERIOD, Action::look_forward, Shift::any, kRepeats},
     Binding{SDLK_END, Action::look_at_newest},
     Binding{SDLK_ESCAPE, Action::quit},
     Binding{SDLK_SPACE, Action::pause},
     Binding{SDLK_KP_SPACE, Action::pause},
-    Binding{SDLK_s, Action::step},
+    Binding{SDLK_s, Action::step, Shift::any, kRepeats},
     Binding{SDLK_r, Action::restart, Shift::up},
     Binding{SDLK_r, Action::restart_with_next_seed, Shift::down},
-    Binding{SDLK_LEFT, Action::pan_left},
-    Binding{SDLK_KP_4, Action::pan_left},
-    Binding{SDLK_RIGHT, Action::pan_right},
-    Binding{SDLK_KP_6, Action::pan_right},
-    Binding{SDLK_UP, Action::pan_up},
-    Binding{SDLK_KP_8, Action::pan_up},
-    Binding{SDLK_DOWN, Action::pan_down},
-    Binding{SDLK_KP_2, Action::pan_down},
-    Binding{SDLK_PLUS, Action::zoom_in},
-    Binding{SDLK_EQUALS, Action::zoom_in},  // the key of + on many keyboards
-    Binding{SDLK_KP_PLUS, Action::zoom_in},
-    Binding{SDLK_MINUS, Action::zoom_out},
-    Binding{SDLK_UNDERSCORE, Action::zoom_out},
-    Binding{SDLK_KP_MINUS, Action::zoom_out},
+    Binding{SDLK_LEFT, Action::pan_left, Shift::any, kRepeats},
+    Binding{SDLK_KP_4, Action::pan_left, Shift::any, kRepeats},
+    Binding{SDLK_RIGHT, Action::pan_right, Shift::any, kRepeats},
+    Binding{SDLK_KP_6, Action::pan_right, Shift::any, kRepeats},
+    Binding{SDLK_UP, Action::pan_up, Shift::any, kRepeats},
+    Binding{SDLK_KP_8, Action::pan_up, Shift::any, kRepeats},
+    Binding{SDLK_DOWN, Action::pan_down, Shift::any, kRepeats},
+    Binding{SDLK_KP_2, Action::pan_down, Shift::any, kRepeats},
+    Binding{SDLK_PLUS, Action::zoom_in, Shift::any, kRepeats},
+    Binding{SDLK_EQUALS, Action::zoom_in, Shift::any, kRepeats},  // the key of + on many keyboards
+    Binding{SDLK_KP_PLUS, Action::zoom_in, Shift::any, kRepeats},
+    Binding{SDLK_MINUS, Action::zoom_out, Shift::any, kRepeats},
+    Binding{SDLK_UNDERSCORE, Action::zoom_out, Shift::any, kRepeats},
+    Binding{SDLK_KP_MINUS, Action::zoom_out, Shift::any, kRepeats},
     Binding{SDLK_0, Action::reset_view},
     Binding{SDLK_KP_0, Action::reset_view},
 };
@@ -66,7 +68,7 @@ constexpr std::array kHelpOfTheView{
     Help{"F11", "full screen"},
     Help{"F12", "save a screenshot"},
     Help{"arrows, right drag", "move the view"},
-    Help{"+, -, wheel", "zoom"},
+    Help{"+, -, wheel, two fingers", "zoom"},
     Help{"0", "fit the arena"},
     Help{"left click", "select a robot (callback_robot_click), or none"},
     Help{"left drag", "move a robot or a passive object"},
@@ -75,10 +77,10 @@ constexpr std::array kHelpOfTheView{
 
 }  // namespace
 
-std::optional<Action> action_of(std::int32_t key, bool shift) {
+std::optional<Action> action_of(std::int32_t key, bool shift, bool is_repeated) {
     for (Binding const& binding : kBindings) {
         bool const fits = binding.shift == Shift::any || (binding.shift == Shift::down) == shift;
-        if (binding.key == key && fits) {
+        if (binding.key == key && fits && (binding.repeats || !is_repeated)) {
             return binding.action;
         }
     }

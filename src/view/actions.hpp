@@ -39,7 +39,8 @@ struct Help {
 };
 
 /// The action of a key, SDL's SDL_Keycode, with or without Shift; letters are those of the keyboard's layout.
-std::optional<Action> action_of(std::int32_t key, bool shift);
+/// `is_repeated`: it has been held down for a while, which most keys ignore.
+std::optional<Action> action_of(std::int32_t key, bool shift, bool is_repeated = false);
 
 /// Keys, those of switches too, then the mouse.
 std::vector<Help> help_lines();

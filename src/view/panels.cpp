@@ -243,11 +243,11 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
     }
     ImGui::EndDisabled();
     if (!status.why_no_way_back.empty()) {
-        text(fmt::format("it cannot go back: {}", status.why_no_way_back));
+        text(fmt::format("the run cannot go back: {}", status.why_no_way_back));
     } else if (status.is_over) {
         ImGui::TextUnformatted("the run is over");
     } else if (!is_kept) {
-        text(fmt::format("it can go back to {:.2f} s", status.earliest_s));
+        text(fmt::format("the run can go back to {:.2f} s at the earliest", status.earliest_s));
     }
 }
 

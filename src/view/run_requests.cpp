@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSlowest = 1e-3;  // that the keys ask for
 constexpr double kFastest = 1e6;
-constexpr double kUnlimitedSlower = 10.0;  // speed after "slower" from no limit, simulated seconds per second
+constexpr double kUnlimitedSlower =
+    10.0;  // speed after "slower" from no limit, while the reached speed is not known yet
 
 }  // namespace
 

@@ -21,8 +21,8 @@ public:
     /// Asks the run for something. Returns why it cannot do it; empty: it has been asked.
     std::string send(Command const& command);
 
-    /// Asks for a speed of `factor` times the present one; from no limit, a slower one is that which the run has
-    /// reached.
+    /// Asks for `factor` times the present speed. Where there is no limit: a slower one is `factor` times the speed
+    /// that the run has reached, and a faster one changes nothing.
     void change_speed(double factor);
 
 private:

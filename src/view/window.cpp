@@ -129,9 +129,9 @@ private:
                     if (event.key.repeat == 0) {  // held down, it would flicker
                         one->press(options_);
                     }
-                } else if (auto const action =
-                               action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0)) {
-                    carry_out(*action, event.key.repeat != 0);
+                } else if (auto const action = action_of(event.key.keysym.sym, (event.key.keysym.mod & KMOD_SHIFT) != 0,
+                                                         event.key.repeat != 0)) {
+                    carry_out(*action);
                 }
                 break;
             case SDL_MOUSEWHEEL:
@@ -175,13 +175,7 @@ private:
         }
     }
 
-    void carry_out(Action action, bool is_repeated) {
-        bool const repeats = action == Action::step || action == Action::look_back || action == Action::look_forward ||
-                             action == Action::slower || action == Action::faster ||
-                             (action >= Action::pan_left && action <= Action::zoom_out);
-        if (is_repeated && !repeats) {
-            return;  // held down: a switch would flicker
-        }
+    void carry_out(Action action) {
         switch (action) {
             case Action::help:
                 show_help();

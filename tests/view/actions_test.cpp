@@ -44,5 +44,15 @@ TEST(Keys, OthersDoNothing) {
     EXPECT_EQ(action_of(SDLK_UNKNOWN, false), std::nullopt);
 }
 
+TEST(Keys, ThatAreHeldDownStepZoomAndPanAndNothingElse) {
+    EXPECT_EQ(action_of(SDLK_s, false, true), Action::step);
+    EXPECT_EQ(action_of(SDLK_PLUS, false, true), Action::zoom_in);
+    EXPECT_EQ(action_of(SDLK_KP_4, false, true), Action::pan_left);
+    EXPECT_EQ(action_of(SDLK_COMMA, false, true), Action::look_back);
+    for (int const key : {SDLK_SPACE, SDLK_r, SDLK_F1, SDLK_F9, SDLK_F12, SDLK_ESCAPE, SDLK_f}) {
+        EXPECT_EQ(action_of(key, false, true), std::nullopt) << key;
+    }
+}
+
 }  // namespace
 }  // namespace pogosim

@@ -18,7 +18,7 @@ from pogosim.analysis.quantities import Quantity, quantities_of
 from pogosim.analysis.trajectories import Trajectories, trajectories_of
 from pogosim.command.parser import warn
 from pogosim.errors import AnalysisError, PictureError, ToolError
-from pogosim.film.replay import replay_page
+from pogosim.film.replay import DEFAULT_TAIL_S, replay_page
 from pogosim.fonts import any_characters, rendered, without_tex
 from pogosim.lines import counted, say
 from pogosim.outputs import partial_output
@@ -40,7 +40,6 @@ MOST_FIGURES = 24
 MOST_ROWS = 400  # of the table of numbers
 LONGEST_S = 30.0  # that a replay takes at the speed it begins with
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0)
-TAIL_S = 5.0
 STATE_DPI = 80.0
 MOST_TRAIL_STEPS = 100_000  # robots times records
 
@@ -256,7 +255,7 @@ def show_run(report: Report, recording: Recording, options: argparse.Namespace) 
         color_by=options.color_by,
         links=False,
         speed=options.speed or speed_for(span_s[1] - span_s[0]),
-        tail=TAIL_S,
+        tail=DEFAULT_TAIL_S,
         view=(),
     )
     name = Path(options.data).name

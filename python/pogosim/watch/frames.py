@@ -6,13 +6,14 @@ A frame, little-endian:
     bytes 2-5    numbers of the two columns whose values follow, two bytes each, from 1; 0: none
     bytes 6-9    number of the frame, which the viewer sends back when it has shown it
     bytes 10-17  simulated time, s, a double
-    then         tables: poses (objects, 3), LEDs (objects, 2), parts (parts, 2), each column (objects, 2)
+    then         tables: poses (objects, 3), LEDs (objects, 2), parts (parts, 2), each column that is not 0 (objects, 2)
 
 A table has a bit for each row, the lowest bit of a byte first: whether the row differs from what the viewer has. Then
 come the differences of these rows, modulo 65536, one column of the table after the other: the low bytes of all, then
-the high bytes, which are mostly equal. Before its first frame a viewer has zeros. Codes of poses go from 0 at one end
-of the box to 65534 at the other, of headings from -pi to pi; 65535 stands for no value. LEDs and values of columns
-are the high and the low half of 32 bits.
+the high bytes, which are mostly equal. Before its first frame a viewer has zeros, and so it has for a column whose
+number is not that of the frame before. Codes of poses go from 0 at one end of the box to 65534 at the other, of
+headings from -pi to pi; 65535 stands for no value. LEDs and values of columns are the high and the low half of 32
+bits.
 
 The light on the floor is a message of its own: two bytes 2, 0, then a byte for each cell.
 """

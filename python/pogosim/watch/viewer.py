@@ -33,7 +33,7 @@ class Viewer:
         Args:
             send: Sends a message, soon and without waiting; called by the thread of the run.
             may_steer: See above.
-            stall_s: So long it is waited for a viewer that does not say that it has shown a frame.
+            stall_s: How long to wait for a viewer that does not report its frames, before it gets another one, s.
         """
         self._send = send
         self._stall_s = stall_s
