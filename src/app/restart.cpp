@@ -66,6 +66,10 @@ std::optional<Restart> restart_of(std::string const& text) {
 
 }  // namespace
 
+bool is_restarted() {
+    return std::getenv(kVariable) != nullptr;
+}
+
 std::optional<Restart> take_restart() {
     char const* const value = std::getenv(kVariable);
     if (value == nullptr) {

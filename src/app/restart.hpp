@@ -9,6 +9,9 @@
 
 namespace pogosim {
 
+/// Whether a run before has left something for this one.
+bool is_restarted();
+
 /// What the run before has left for this one, if there was one. The next call finds nothing, and neither do programs
 /// that this one starts.
 std::optional<Restart> take_restart();

@@ -365,7 +365,9 @@ int run_as_told(pogosim_program const& program, int argc, char** argv) {
     }
     if (ended.restart && (code == ExitCode::done || code == ExitCode::interrupted)) {
         std::fflush(nullptr);
+        hold_interrupts();  // until the next run catches them: they would end it without a word
         restart_program(argv, folder, *ended.restart);
+        release_interrupts();
         std::fprintf(stderr, "Error: cannot start %s again: %s\n", argv[0], std::strerror(errno));
         return static_cast<int>(ExitCode::usage);
     }
@@ -382,6 +384,9 @@ int run_as_told(pogosim_program const& program, int argc, char** argv) {
 void pogosim_guard_process() {
     take_process();
     catch_interrupts();
+    if (is_restarted()) {
+        release_interrupts();  // held since the end of the run before
+    }
     expect_run_server();
 }
 

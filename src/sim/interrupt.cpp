@@ -38,6 +38,15 @@ char const* name_of(int signal) {
     return "a signal";
 }
 
+sigset_t interrupts() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (SignalName const& interrupt : kInterrupts) {
+        sigaddset(&set, interrupt.signal);
+    }
+    return set;
+}
+
 /// No data can be lost where no robot runs.
 [[noreturn]] void end_outside_of_the_run(int signal) {
     prepare_interrupt_message(name_of(signal));
@@ -85,6 +94,16 @@ void catch_interrupts() {
             catch_signal(interrupt.signal, SA_RESTART, on_interrupt);
         }
     }
+}
+
+void hold_interrupts() {
+    sigset_t const set = interrupts();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+void release_interrupts() {
+    sigset_t const set = interrupts();
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
 }  // namespace pogosim

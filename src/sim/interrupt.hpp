@@ -13,4 +13,8 @@ void ignore_broken_outputs();
 /// not.
 void catch_interrupts();
 
+/// Lets these signals wait, also while this process becomes another program, until release_interrupts().
+void hold_interrupts();
+void release_interrupts();
+
 }  // namespace pogosim

@@ -348,7 +348,7 @@ def test_few_runs_say_that_they_cannot_show_a_difference(tmp_path: Path) -> None
     batch(tmp_path / "b.feather", HIGH[:3], OTHER_SEEDS[:3])
     result = compared(tmp_path, "a.feather", "b.feather")
     assert result.code == 0
-    assert "which so few runs could not show" in result.output.splitlines()[0]
+    assert "so few runs cannot show any difference" in result.output.splitlines()[0]
     assert "p is at least 0.2 after the correction, above 0.05" in result.output
 
 
@@ -419,8 +419,18 @@ def test_figure_is_drawn(tmp_path: Path, ending: str) -> None:
 
 def test_figure_of_single_runs_is_drawn(tmp_path: Path) -> None:
     write(tmp_path / "a.feather", walkers().rename(columns={"heard": "$x_{"}))
-    assert compared(tmp_path, "a.feather", "a.feather", "-o", "f.png").code == 0
+    result = compared(tmp_path, "a.feather", "a.feather", "-o", "f.png")
+    assert result.code == 0
+    assert "Figure of the numbers over time: f.png" in result.output.splitlines()
     assert (tmp_path / "f.png").exists()
+
+
+def test_runs_of_other_lengths_are_told(tmp_path: Path) -> None:
+    write(tmp_path / "a.feather", walkers(3, 5))
+    write(tmp_path / "b.feather", walkers(3, 9))
+    both = compared(tmp_path, "a.feather", "b.feather", "--category", "robots").output
+    assert "Runs of a end at 2 s, those of b at 4 s (medians): means and ends are not of the same time." in both
+    assert "Runs of a" not in compared(tmp_path, "a.feather", "a.feather", "--category", "robots").output
 
 
 def test_control_characters_are_escaped(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from in_process import pogosim, refusal
 from live_client import Client, wait_for
@@ -386,6 +387,48 @@ def test_reset_that_fails_is_said_at_the_end(served: Served) -> None:
     assert served.process.returncode == 2
     assert "is complete" not in said
     assert "data.feather" in said.splitlines()[-1]
+
+
+def rows_until(file: Path) -> float:
+    return float(pd.read_feather(file)["time"].max())
+
+
+def test_files_of_earlier_runs_are_kept(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    arguments = (str(hosted), "-c", str(scene), "--port", "0", "--pause", "--set", "save_data_period=0.01")
+    file = tmp_path / "data.feather"
+    for steps in (100, 200):
+        with serving(tmp_path, *arguments) as served:
+            viewer = served.view()
+            viewer.do("step", steps=steps)
+            wait_for(lambda viewer=viewer, steps=steps: viewer.last.time_s == pytest.approx(0.01 * steps))
+            served.end()
+    assert rows_until(file) == pytest.approx(2.0)
+    assert rows_until(tmp_path / "data.1.feather") == pytest.approx(1.0)
+    with serving(tmp_path, *arguments) as served:  # and on a reset
+        viewer = served.view()
+        viewer.do("step", steps=50)
+        viewer.do("reset")
+        viewer.do("step", steps=20)
+        wait_for(lambda: viewer.last.time_s == pytest.approx(0.2))
+        said = served.end()
+    assert "data.feather of an earlier run is data.3.feather now." in said
+    ends = [rows_until(tmp_path / f"data.{name}feather") for name in ("", "1.", "2.", "3.")]
+    assert ends == pytest.approx([0.2, 1.0, 2.0, 0.5])
+
+
+def test_file_that_the_run_does_not_write_has_its_name(hosted: Path, scene: Path, tmp_path: Path) -> None:
+    file = tmp_path / "data.feather"
+    file.write_bytes(b"of something else")
+    arguments = (str(hosted), "-c", str(scene), "--port", "0")
+    wrong = pogosim(tmp_path, "watch", *arguments, "--set", "objects.robots.nb=-3")
+    assert "objects.robots.nb" in refusal(wrong)
+    assert [own.name for own in tmp_path.glob("data*")] == ["data.feather"]
+    with serving(tmp_path, *arguments, "--pause", "--set", "enable_data_logging=false") as served:
+        viewer = served.view()
+        viewer.do("reset")
+        viewer.do("step", steps=1)
+        wait_for(lambda: viewer.last.time_s > 0)
+    assert file.read_bytes() == b"of something else"
 
 
 def test_reader_of_lines_that_goes_away_does_not_end_the_run(hosted: Path, scene: Path, tmp_path: Path) -> None:

@@ -354,7 +354,7 @@ def run_of(rows: pd.DataFrame, labels: dict[str, Any], metadata: Mapping[str, An
         raise AnalysisError(
             f"it has several rows of {twice['robot_category']} {twice['robot_id']} at {twice['time']:g} s, in "
             f"{', '.join(f'{name} {value}' for name, value in labels.items())}: give runs different numbers in the "
-            "column run"
+            "column run, or name what else tells them apart (result_new_columns of a batch)"
         )
     position = np.full((*shape, 2), np.nan)
     position[at_time, robot] = rows[["x", "y"]].to_numpy(dtype=float)

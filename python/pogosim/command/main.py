@@ -7,6 +7,8 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from types import FrameType
+from typing import NoReturn
 
 import pogosim
 from pogosim.arguments import shown
@@ -132,7 +134,15 @@ def process(prog: str, command: Callable[[], int]) -> int:
     """
     if "--show" not in sys.argv:
         os.environ["MPLBACKEND"] = "agg"
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, interrupt)
     return last(ended(prog, lambda: last(command())))
+
+
+def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
+    """End the command as Ctrl-C does: it removes what it has half written."""
+    raise KeyboardInterrupt
 
 
 def last(code: int) -> int:

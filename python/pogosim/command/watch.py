@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import functools
 import ipaddress
 import math
 import socket
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,7 @@ from pogosim.extras import installing
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
 from pogosim.lines import printable
-from pogosim.simulation.errors import ProgramFailedError, SimulationError
+from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
 
 if TYPE_CHECKING:
     from pogosim.simulation import Simulation
@@ -158,17 +159,56 @@ def configuration_for(options: argparse.Namespace) -> Path:
     return Path(found[1])
 
 
-def data_file_in(configuration: Path, settings: dict[str, Any]) -> str:
-    """Return the data file that a configuration names, as a run of the program would write it."""
+def data_file_in(configuration: Path, settings: dict[str, Any]) -> tuple[str, bool]:
+    """Return the data file that a configuration names, and whether a run of the program writes it."""
     from pogosim.yaml_1_2 import WRONG_VALUES, parse_yaml  # takes a while
 
-    if "data_filename" in settings:
-        return str(settings["data_filename"])
     try:
         values = parse_yaml(configuration.read_text(encoding="utf-8"))
     except (*WRONG_VALUES, OSError):
-        return "data.feather"  # the simulator says what is wrong
-    return str(values.get("data_filename", "data.feather")) if isinstance(values, dict) else "data.feather"
+        values = {}  # the simulator says what is wrong
+    values = {**(values if isinstance(values, dict) else {}), **settings}
+    return str(values.get("data_filename", "data.feather")), values.get("enable_data_logging", True) is not False
+
+
+def kept(path: Path) -> Path | None:
+    """Let a data file have another name, and return it; None: there is no need.
+
+    Raises:
+        ConfigurationError: It cannot have another one.
+    """
+    from pogosim.watch.kept_files import keep
+
+    try:
+        return keep(path)
+    except OSError as error:
+        raise ConfigurationError(f"'{printable(path)}' cannot be kept: {error.strerror}") from None
+
+
+def tell_of_kept(path: Path, name: Path | None) -> None:
+    """Say what the data file of an earlier run is called now."""
+    from pogosim.watch.terminal import print_out
+
+    if name is not None:
+        print_out(f"{printable(path)} of an earlier run is {name.name} now.")
+
+
+def keep_for_reset(path: Path) -> None:
+    """Keep the data file of a run that has ended."""
+    tell_of_kept(path, kept(path))
+
+
+@contextlib.contextmanager
+def kept_for_run(path: Path, is_written: bool) -> Iterator[None]:
+    """Keep a data file that a run would replace; it has its name back if there is no run."""
+    name = kept(path) if is_written else None
+    try:
+        yield
+    except BaseException:
+        if name is not None:
+            name.rename(path.resolve())
+        raise
+    tell_of_kept(path, name)
 
 
 def watch(options: argparse.Namespace, prog: str) -> int:
@@ -193,11 +233,16 @@ def watch(options: argparse.Namespace, prog: str) -> int:
     signals = Signals(prog)
     try:
         with listening(options.address, options.port) as own, told() as handler:
-            data_file = data_file_in(configuration, settings)
+            data_file, is_written = data_file_in(configuration, settings)
             try:
-                simulation = Simulation(program, configuration, seed=options.seed, set=settings, data_file=data_file)
+                with kept_for_run(Path(data_file), is_written):
+                    simulation = Simulation(
+                        program, configuration, seed=options.seed, set=settings, data_file=data_file
+                    )
             except SimulationError as error:
                 raise WatchError(str(error)) from None
+            if is_written:
+                simulation._current.when_ended = functools.partial(keep_for_reset, simulation.data_file)
             live = LiveRun(simulation, one_steers=True)
             try:
                 handler.tell(live)
@@ -229,7 +274,8 @@ def ended(simulation: Simulation, live: LiveRun, prog: str, is_open: bool) -> in
     """Say how it has ended; `is_open`: no reset has failed. Returns the exit code."""
     from pogosim.watch.terminal import print_out
 
-    if is_open and simulation.data_file.is_file():
+    is_whole = live.failure is None or isinstance(live.failure, ProgramFailedError)
+    if is_open and is_whole and simulation.data_file.is_file():
         print_out(f"{simulation.data_file} is complete.")
     if live.failure is None:
         return 0

@@ -29,6 +29,7 @@ class Numbers:
     samples: dict[Key, dict[str, list[float]]] = field(default_factory=dict)  # by "speed, mean"
     curves: dict[Key, dict[str, list[tuple[Floats, Floats]]]] = field(default_factory=dict)  # by label: times, values
     runs: dict[Key, int] = field(default_factory=dict)
+    ends_s: list[float] = field(default_factory=list)  # last time of each run
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ def numbers_of(data: str, category: str | None, with_curves: bool) -> Numbers:
     found = Numbers()
     for run, quantities in zip(runs, for_each_run(listed, runs, argparse.Namespace(), "compare"), strict=True):
         key = key_of(run)
+        found.ends_s.append(float(run.time_s[-1]))
         found.runs[key] = found.runs.get(key, 0) + 1
         samples = found.samples.setdefault(key, {})
         for own in quantities:

@@ -79,7 +79,7 @@ def numbers_verdict(found: Distributions, level: float, test: str) -> str:
     significant = found.significant(level)
     how = f"at the level {level:g} ({TESTS[test]}, Holm)"
     if not significant:
-        few = ", which so few runs could not show" if found.least > level else ""
+        few = "; so few runs cannot show any difference at this level" if found.least > level else ""
         return f"none of {counted(found.tests, 'number')} differs {how}{few}"
     of = [f"{own.name}{f' ({own.combination})' if own.combination else ''}" for own in significant]
     verb = "differs" if len(significant) == 1 else "differ"

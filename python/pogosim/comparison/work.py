@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import statistics
 from pathlib import Path
 
 from pogosim.command.parser import warn, warnings_told
@@ -116,15 +118,29 @@ def numbers_compared(
             raise
         return None, [f"Distributions are not compared: {error}."]
     found = compare_numbers(a, b, options.test)
+    drawn_notes = []
     if with_curves:
         drawn = figure.draw(a, b, (options.a, options.b), found)
         if drawn is None:
             warn(prog, f"{options.output} is not drawn: no number is in both files")
         else:
             figure.write(drawn, real_output(options.output))
+            drawn_notes = [f"Figure of the numbers over time: {options.output}"]
+    notes = [*notes_on_durations(a, b), *drawn_notes]
     if not can_tell(found) and not any(found.only_in):
-        return found, ["Distributions are not tested: that needs two runs in each file."]
-    return found, []
+        notes.append("Distributions are not tested: that needs two runs in each file.")
+    return found, notes
+
+
+def notes_on_durations(a: Numbers, b: Numbers) -> list[str]:
+    """Say if runs of the two files end at different times, so that their means and ends are not of the same time."""
+    ends_s = [statistics.median(own.ends_s) for own in (a, b)]
+    if math.isclose(*ends_s, rel_tol=0.01):
+        return []
+    return [
+        f"Runs of a end at {ends_s[0]:.6g} s, those of b at {ends_s[1]:.6g} s (medians): means and ends are not of "
+        "the same time."
+    ]
 
 
 def numbers_in(name: str, category: str | None, with_curves: bool) -> Numbers:

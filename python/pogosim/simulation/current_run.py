@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 from pogosim.lines import printable
@@ -45,6 +46,7 @@ class CurrentRun:
         is_shared: A view goes on with it in a thread of its own: other threads wait for each other.
         should_pause: Makes `step` return after the present slice.
         process: Id of the process that created it.
+        when_ended: Called when a run has ended for another one by a reset; its files are complete.
         warned: Warnings that were passed on, of this run, of earlier ones, and of simulations that share them.
     """
 
@@ -55,6 +57,7 @@ class CurrentRun:
         self.is_shared = False
         self.should_pause = False
         self.process = os.getpid()
+        self.when_ended: Callable[[], object] = lambda: None
         self.warned = warned
         self._folder: Path | None = None
 

@@ -303,6 +303,7 @@ class Simulation:
                 if self._current.run is not None:
                     self._current.run.retire()
                     self._end()
+                    self._current.when_ended()
                 old_settings, self._settings = self._settings, {**self._settings, **new_settings}
                 try:
                     self._open(self._seed if seed is None else seed)

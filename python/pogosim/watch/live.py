@@ -266,11 +266,7 @@ class LiveRun:
             return
         steps = self._pace.steps(self.status.speed, simulation.time_step)
         began_s = time.perf_counter()
-        try:
-            made = simulation.step(steps) if steps else 0
-        except SimulationError as error:
-            self._fail(error)
-            return
+        made = simulation.step(steps) if steps else 0
         self._pace.made(made, time.perf_counter() - began_s)
 
     def _show(self, simulation: Simulation) -> None:

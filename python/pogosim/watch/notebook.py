@@ -81,6 +81,7 @@ class RunView(anywidget.AnyWidget):
     def pause(self) -> None:
         """Stop, and return when it stands still."""
         self._live.pause()
+        self._keep_still()
 
     def _hear(self, _: Any, content: Any, buffers: Any) -> None:  # noqa: ARG002
         """Take a message of a view of this widget in a page."""
@@ -124,7 +125,7 @@ class RunView(anywidget.AnyWidget):
 
     def _ipython_display_(self) -> None:
         """Show a still picture, which notebooks keep when they are saved, and the live view, which hides it."""
-        if not is_in_iframe():
+        if self.simulation._current.run is not None and not is_in_iframe():
             handle = display(self._still(), display_id=True)  # type: ignore[no-untyped-call]
             if handle is not None:
                 self._stills = [*self._stills[-MOST_STILLS:], handle]
