@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <SDL_clipboard.h>
+#include <SDL_keycode.h>
+#include <SDL_stdinc.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -249,6 +254,9 @@ void draw_past(PanelState const& state, PanelActions const& actions) {
     } else if (!is_kept) {
         text(fmt::format("the run can go back to {:.2f} s at the earliest", status.earliest_s));
     }
+    if (state.options->selected_robot && inspected(state) == nullptr) {
+        text("no values of the robot were kept: it was not selected then");
+    }
 }
 
 /// Returns whether its section "View" is open.
@@ -344,6 +352,66 @@ void press_key(ImGuiIO& io, ImGuiKey key, bool is_down) {
 #endif
 }
 
+/// Keys that edit a field.
+struct EditingKey {
+    std::int32_t sdl;
+    ImGuiKey imgui;
+};
+constexpr std::array kEditingKeys{
+    EditingKey{SDLK_BACKSPACE, ImGuiKey_Backspace},
+    EditingKey{SDLK_DELETE, ImGuiKey_Delete},
+    EditingKey{SDLK_RETURN, ImGuiKey_Enter},
+    EditingKey{SDLK_ESCAPE, ImGuiKey_Escape},
+    EditingKey{SDLK_LEFT, ImGuiKey_LeftArrow},
+    EditingKey{SDLK_RIGHT, ImGuiKey_RightArrow},
+    EditingKey{SDLK_HOME, ImGuiKey_Home},
+    EditingKey{SDLK_END, ImGuiKey_End},
+    EditingKey{SDLK_a, ImGuiKey_A},
+    EditingKey{SDLK_c, ImGuiKey_C},
+    EditingKey{SDLK_v, ImGuiKey_V},
+    EditingKey{SDLK_x, ImGuiKey_X},
+    EditingKey{SDLK_y, ImGuiKey_Y},
+    EditingKey{SDLK_z, ImGuiKey_Z},
+};
+
+void press_keys(ImGuiIO& io, PanelInput const& input) {
+#if IMGUI_VERSION_NUM >= 18900
+    io.AddKeyEvent(ImGuiMod_Ctrl, input.ctrl);
+    io.AddKeyEvent(ImGuiMod_Shift, input.shift);
+#elif IMGUI_VERSION_NUM >= 18700
+    io.AddKeyEvent(ImGuiKey_ModCtrl, input.ctrl);
+    io.AddKeyEvent(ImGuiKey_ModShift, input.shift);
+#else
+    io.KeyCtrl = input.ctrl;
+    io.KeyShift = input.shift;
+#endif
+    for (EditingKey const& key : kEditingKeys) {
+        press_key(io, key.imgui, std::ranges::find(input.keys, key.sdl) != input.keys.end());
+    }
+}
+
+char const* clipboard_text() {
+    static std::string text;
+    if (char* const copied = SDL_GetClipboardText()) {
+        text = copied;
+        SDL_free(copied);
+    }
+    return text.c_str();
+}
+
+/// Copies from fields to other windows, and back.
+void use_clipboard() {
+#if IMGUI_VERSION_NUM >= 19110
+    ImGui::GetPlatformIO().Platform_GetClipboardTextFn = [](ImGuiContext*) { return clipboard_text(); };
+    ImGui::GetPlatformIO().Platform_SetClipboardTextFn = [](ImGuiContext*, char const* text) {
+        SDL_SetClipboardText(text);
+    };
+#else
+    ImGui::GetIO().GetClipboardTextFn = [](void*) { return clipboard_text(); };
+    ImGui::GetIO().SetClipboardTextFn = [](void*, char const* text) { SDL_SetClipboardText(text); };
+#endif
+}
+
 /// A panel at its place, if that is to be set anew. Returns whether it is open.
 bool begin_panel(char const* title, PanelBox const& box, bool in_its_place, bool* is_shown, ImGuiWindowFlags flags) {
     ImGuiCond const when = in_its_place ? ImGuiCond_Always : ImGuiCond_Appearing;
@@ -357,6 +425,7 @@ bool begin_panel(char const* title, PanelBox const& box, bool in_its_place, bool
 Panels::Panels(float scale) : context_(ImGui::CreateContext()), scale_(scale) {
     ImGui::SetCurrentContext(context_.get());
     ImGuiIO& io = ImGui::GetIO();
+    use_clipboard();
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
@@ -377,6 +446,12 @@ bool Panels::wants_text() const {
     return ImGui::GetIO().WantTextInput;
 }
 
+Inspection const* inspected(PanelState const& state) {
+    bool const is_there = state.moment != nullptr && state.moment->inspection &&
+                          state.options->selected_robot == state.moment->inspection->robot;
+    return is_there ? &*state.moment->inspection : nullptr;
+}
+
 bool Panels::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
 }
@@ -390,7 +465,7 @@ PanelRoom Panels::room_now(PanelState const& state) const {
                    .arena_px = {camera.to_pixels(bounds_mm.min, picture), camera.to_pixels(bounds_mm.max, picture)},
                    .scale = scale_,
                    .title_px = ImGui::GetFrameHeight(),
-                   .has_inspector = state.moment != nullptr && state.moment->inspection.has_value(),
+                   .has_inspector = inspected(state) != nullptr,
                    .has_plot = state.plot};
     if (control_px_ > 0.0F) {
         room.control_px = control_px_;
@@ -430,7 +505,7 @@ void Panels::draw_all(PanelState& state, PanelActions const& actions) {
         float const width_px = inspector_is_open_ ? box.size_px.x : title_width_px;
         ImGui::SetNextWindowSizeConstraints({width_px, 0.0F}, {width_px, box.size_px.y});
         ImGui::SetNextWindowSize({width_px, 0.0F});
-        std::string const title = fmt::format("Robot {}###inspector", state.moment->inspection->id);
+        std::string const title = fmt::format("Robot {}###inspector", inspected(state)->id);
         bool const was_open = inspector_is_open_;
         inspector_is_open_ = begin_panel(title.c_str(), box, in_place, nullptr, ImGuiWindowFlags_NoResize);
         if (inspector_is_open_ != was_open && !in_place) {
@@ -440,7 +515,7 @@ void Panels::draw_all(PanelState& state, PanelActions const& actions) {
                                  box.corner_px.y});
         }
         if (inspector_is_open_) {
-            draw_inspector(*state.moment->inspection);
+            draw_inspector(*inspected(state));
         }
         ImGui::End();
     }
@@ -468,9 +543,7 @@ void Panels::draw(Canvas& canvas, PanelInput const& input, PanelState& state, Pa
     io.MouseDown[0] = input.mouse.left_is_down;
     io.MouseWheel = input.wheel;
     io.AddInputCharactersUTF8(input.text.c_str());
-    press_key(io, ImGuiKey_Backspace, input.backspace);
-    press_key(io, ImGuiKey_Enter, input.enter);
-    press_key(io, ImGuiKey_Escape, input.escape);
+    press_keys(io, input);
     ImGui::NewFrame();
     bool const shows_panels = state.control && has_room_for_panels({io.DisplaySize.x, io.DisplaySize.y}, scale_);
     if (shows_panels) {

@@ -24,12 +24,12 @@ inline constexpr double kBusyS = 0.5;
 /// Input for the panels.
 struct PanelInput {
     MouseState mouse;
-    float wheel = 0.0F;    // lines up
-    float seconds = 0.0F;  // since the last picture
-    std::string text{};    // typed since then, UTF-8
-    bool backspace = false;
-    bool enter = false;
-    bool escape = false;
+    float wheel = 0.0F;                // lines up
+    float seconds = 0.0F;              // since the last picture
+    std::string text{};                // typed since then, UTF-8
+    std::vector<std::int32_t> keys{};  // pressed since then, SDL's SDL_Keycode
+    bool ctrl = false;
+    bool shift = false;
 };
 
 /// A restart would overwrite files: what becomes of them?
@@ -67,6 +67,9 @@ struct PanelState {
     double newest_s = 0.0;
     std::string condition{};  // to pause by, as it is being typed
 };
+
+/// The selected robot at the moment that is shown; null: there is none, or another one was selected then.
+Inspection const* inspected(PanelState const& state);
 
 class Panels {
 public:

@@ -149,9 +149,9 @@ void choose_column(PanelState& state) {
         ImGui::TextWrapped("%s", columns[state.column].c_str());
     }
     ImGui::TextColored(ImColor(kMean), "swarm: mean, 10 to 90 %%");
-    if (state.moment != nullptr && state.moment->inspection) {
+    if (Inspection const* const one = inspected(state)) {
         ImGui::SameLine();
-        ImGui::TextColored(ImColor(kRobot), "robot %d", state.moment->inspection->id);
+        ImGui::TextColored(ImColor(kRobot), "robot %d", one->id);
     }
 }
 
@@ -160,8 +160,8 @@ void draw_series(PanelState const& state) {
     std::vector<double> const& times = history.times_s();
     ColumnSeries const& swarm = history.swarm(state.column);
     std::vector<float> robot;
-    if (state.moment != nullptr && state.moment->inspection) {
-        robot = history.robot(state.column, state.moment->inspection->robot);
+    if (Inspection const* const one = inspected(state)) {
+        robot = history.robot(state.column, one->robot);
     }
     Range values;
     for (auto const* const series : {&swarm.low, &swarm.mean, &swarm.high, &std::as_const(robot)}) {

@@ -122,7 +122,7 @@ private:
                 break;
             case SDL_KEYDOWN:
                 if (panels_.wants_text()) {
-                    take_typing(event.key.keysym.sym);
+                    take_typing(event.key.keysym);
                 } else if (state_.question) {
                     answer(event.key.keysym.sym);
                 } else if (Switch const* const one = switch_of(event.key.keysym.sym)) {
@@ -158,10 +158,10 @@ private:
     }
 
     /// A key while the user types into a field; letters come as SDL_TEXTINPUT.
-    void take_typing(SDL_Keycode key) {
-        typed_.backspace = typed_.backspace || key == SDLK_BACKSPACE;
-        typed_.enter = typed_.enter || key == SDLK_RETURN || key == SDLK_KP_ENTER;
-        typed_.escape = typed_.escape || key == SDLK_ESCAPE;
+    void take_typing(SDL_Keysym const& key) {
+        typed_.keys.push_back(key.sym == SDLK_KP_ENTER ? SDLK_RETURN : key.sym);
+        typed_.ctrl = typed_.ctrl || (key.mod & (KMOD_CTRL | KMOD_GUI)) != 0;
+        typed_.shift = typed_.shift || (key.mod & KMOD_SHIFT) != 0;
     }
 
     void take_window_event(SDL_WindowEvent const& event) {
@@ -521,14 +521,10 @@ private:
         resize();
         choose_moment();
         painter_.paint(canvas_, view_.camera(), moment_.on_screen().snapshot, options_);
-        PanelInput const input{.mouse = mouse_.take(),
-                               .wheel = std::exchange(wheel_, 0.0F),
-                               .seconds = std::chrono::duration<float>(now - last_drawn_).count(),
-                               .text = std::move(typed_.text),
-                               .backspace = typed_.backspace,
-                               .enter = typed_.enter,
-                               .escape = typed_.escape};
-        typed_ = {};
+        PanelInput input = std::exchange(typed_, {});
+        input.mouse = mouse_.take();
+        input.wheel = std::exchange(wheel_, 0.0F);
+        input.seconds = std::chrono::duration<float>(now - last_drawn_).count();
         last_drawn_ = now;
         panels_.draw(canvas_, input, state_,
                      {.send = [this](Command const& command) { send(command); },
@@ -562,7 +558,7 @@ private:
     ArenaView view_;
     RunRequests requests_;
     ShownMoment moment_;
-    PanelInput typed_;  // since the last picture
+    PanelInput typed_;  // text and keys since the last picture
     PanelState state_;
     MouseStates mouse_;
     float wheel_ = 0.0F;  // lines up since the last picture, over a panel

@@ -23,6 +23,7 @@ WITHOUT_DATA: dict[str, object] = {**SCENE, "enable_data_logging": False}
 BESIDE_PANELS = np.s_[:, 250:]
 GO_ON = (115, 101)  # the button in the panel "Run"
 CONDITION = (170, 479)  # the field, while the section "View" is open
+INSPECTOR = np.s_[20:300, 660:700]  # some of the pixels of its panel, beside the time and the robots
 FIELD = np.s_[469:490, 105:235]  # its pixels
 
 
@@ -54,9 +55,13 @@ def click_into_condition(window: Shown) -> None:
     before = window.shot()
     window.click(*PLACES["header View"])
     window.wait_for_picture(lambda picture: differ(picture[FIELD], before[FIELD]), "the section")
-    empty = window.shot()
+    click_into_field(window)
+
+
+def click_into_field(window: Shown) -> None:
+    before = window.shot()
     window.click(*CONDITION)
-    window.wait_for_picture(lambda picture: differ(picture[FIELD], empty[FIELD]), "the field's cursor")
+    window.wait_for_picture(lambda picture: differ(picture[FIELD], before[FIELD]), "the field's cursor")
 
 
 def test_moments_are_seen_again_and_the_run_goes_on_from_one(
@@ -109,3 +114,28 @@ def test_condition_that_makes_no_sense_is_told(display: Display, window_program:
         click_into_condition(window)
         window.keys("l", "Return")
         wait_for(lambda: "pause_when: " in window.text(), "what is wrong")
+
+
+def test_keys_edit_the_condition(display: Display, window_program: Path, tmp_path: Path) -> None:
+    with shown(display, window_program, tmp_path, WITHOUT_DATA) as window:
+        click_into_condition(window)
+        window.keys("a", "b", "c", "Home", "Delete", "x", "Return")
+        wait_for(lambda: "'xbc', character 1: there is no value 'xbc'" in window.text(), "the first name")
+        click_into_field(window)
+        window.keys("ctrl+a", "n", "Return")
+        wait_for(lambda: "'n', character 1: there is no value 'n'" in window.text(), "the second name")
+
+
+def test_values_of_a_robot_that_is_selected_later_are_not_those_of_the_past(
+    display: Display, window_program: Path, tmp_path: Path
+) -> None:
+    with shown(display, window_program, tmp_path, WITHOUT_DATA) as window:
+        seen = steps(window, 2)
+        height, width = seen[-1].shape[:2]
+        scale = 0.95 * min(width, height) / 1000
+        window.click(width / 2 + 100 * scale, height / 2 - 200 * scale)  # robot 0, which has hardly moved
+        window.wait_for_picture(lambda picture: differ(picture[INSPECTOR], seen[-1][INSPECTOR]), "the inspector")
+        window.keys("comma")
+        window.wait_for_picture(lambda picture: not differ(picture[INSPECTOR], seen[-1][INSPECTOR]), "no inspector")
+        window.keys("End")
+        window.wait_for_picture(lambda picture: differ(picture[INSPECTOR], seen[-1][INSPECTOR]), "the inspector")
