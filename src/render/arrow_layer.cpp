@@ -55,7 +55,7 @@ void draw_velocities(Scene const& scene) {
 
 void draw_heard(Scene const& scene) {
     Scenery const& scenery = scene.scenery();
-    Pixel const colour = scene.colours.contrast_to(scene.colours.floor);
+    Pixel const colour = scene.colours.heard;
     for (HeardMessage const& heard : scene.snapshot.heard) {
         std::uint32_t const from = scenery.robot_body[heard.sender];
         std::uint32_t const to = scenery.robot_body[heard.receiver];

@@ -137,6 +137,7 @@ ThemeColours theme_colours(ViewOptions const& options) {
         colours.link_at_rest = light::kLinkAtRest;
         colours.link_pulled = light::kLinkPulled;
         colours.link_pushed = light::kLinkPushed;
+        colours.heard = light::kHeard;
         colours.selection_rim = light::kSelectionRim;
     }
     if (options.palette == PaletteKind::color_blind) {

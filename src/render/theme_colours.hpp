@@ -28,6 +28,7 @@ struct ThemeColours {
     Pixel link_at_rest = palette::kLinkAtRest;
     Pixel link_pulled = palette::kLinkPulled;
     Pixel link_pushed = palette::kLinkPushed;
+    Pixel heard = palette::kHeard;
     Pixel selection = palette::kSelection;
     Pixel selection_rim = palette::kSelectionRim;
     bool for_colour_blind = false;  // hues of LEDs are replaced, see of_led()

@@ -140,13 +140,13 @@ TEST(Heard, PointsFromTheSenderAndFades) {
     snapshot.heard = {{.sender = 0, .receiver = 1, .time_s = 10.0}};
     ViewOptions options = nothing();
     options.heard = true;
-    auto const brightness = [&](Vec2 where) { return at_mm(painted(snapshot, options), where) >> 16U & 0xFFU; };
+    auto const brightness = [&](Vec2 where) { return at_mm(painted(snapshot, options), where) >> 8U & 0xFFU; };
     unsigned const fresh = brightness({500, 500});
     EXPECT_GT(brightness({765, 500}), 100U);  // its head is at the receiver
     snapshot.heard[0].time_s = 9.2;
     unsigned const old = brightness({500, 500});
     EXPECT_GT(fresh, old + 50U);
-    EXPECT_GT(old, palette::kFloor >> 16U & 0xFFU);
+    EXPECT_GT(old, palette::kFloor >> 8U & 0xFFU);
 }
 
 TEST(Labels, AreOnRobotsAndNowhereElse) {
