@@ -145,6 +145,13 @@ def test_speed_is_chosen(shown: Shown) -> None:
     wait_for(lambda: "reset it to play it again" in shown.text("told"))
 
 
+def test_lamps_are_suns(shown: Shown) -> None:
+    shown.wait("live.view.state.frames > 1")
+    x, y = shown.value("live.view.camera.toScreen(560, 560)")
+    red, green, blue = shown.picture()[round(y), round(x)]
+    assert (red, green, blue) == (0xFF, 0xD1, 0x66)
+
+
 def test_time_that_was_seen_can_be_looked_at_again(shown: Shown) -> None:
     first = shown.simulation.positions.copy()
     for _ in range(20):

@@ -29,7 +29,7 @@ from pogosim.picture.speed import with_speed
 from pogosim.picture.swarm import KIND, OBJECT, RGB, Recording, coloured
 from pogosim.view import assets
 from pogosim.view.beginning import view_of
-from pogosim.view.kinds import category_data
+from pogosim.view.kinds import category_data, lamp_places
 
 FOLDER = Path(__file__).parent
 OWN = {"time", "x", "y", "angle", "robot_category", "robot_id", "subpart_id", OBJECT, KIND, "led_rgb", *RGB}
@@ -131,7 +131,7 @@ def replay_data(
         "columns": columns,
         "lightCells": LIGHT_CELLS,
         "walls": wall_data(recording, bodies),
-        "lamps": lamp_data(recording),
+        "lamps": lamp_places(recording.last.lamps),
         "lights": light_tables(packer, recording, bodies),
         "membranes": membrane_tables(packer, recording, bodies, span_s),
         "bodyLinks": body_link_data(recording, bodies),
@@ -276,18 +276,6 @@ def wall_data(recording: Recording, bodies: Timeline) -> list[dict[str, Any]]:
         lines = [np.round(line, 3).tolist() for line in layers.wall_lines(kind, swarm.polygons)]
         walls.append({"lines": lines, "colours": changes or [[0, None]]})
     return walls
-
-
-def lamp_data(recording: Recording) -> list[dict[str, Any]]:
-    """Places of lamps that shine on a part of the arena."""
-    return [
-        {
-            "centre": list(lamp.centre_mm),
-            "orbit": [lamp.orbit_radius_mm, lamp.orbit_speed_rad_s, lamp.orbit_phase_rad],
-        }
-        for lamp in recording.last.lamps
-        if lamp.shape.kind not in ("global", "arena")
-    ]
 
 
 def light_tables(packer: Packer, recording: Recording, bodies: Timeline) -> list[list[int]]:

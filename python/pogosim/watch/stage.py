@@ -14,7 +14,7 @@ from pogosim.picture import layers
 from pogosim.picture.body_links import LEAST_TENSION_N, N_PER_MM
 from pogosim.picture.figure import counted
 from pogosim.picture.palette import PALETTE
-from pogosim.scene import Kind, bounds, floor_outline, kinds_in, read_periodic
+from pogosim.scene import Kind, bounds, floor_outline, kinds_in, lamps_in, read_periodic
 from pogosim.several_files import configuration_of
 from pogosim.simulation import Simulation
 from pogosim.simulation.library import library
@@ -22,7 +22,7 @@ from pogosim.simulation.objects import object_state
 from pogosim.utils import parsed
 from pogosim.varied import leaves
 from pogosim.view.beginning import view_of
-from pogosim.view.kinds import category_data
+from pogosim.view.kinds import category_data, lamp_places
 from pogosim.watch.looking import owners_of_parts
 
 MARGIN = 0.1  # of the arena's box on each side, in which poses are told, too
@@ -49,6 +49,7 @@ class Stage:
         self.robots = np.array([-1 if own.robot == 2**32 - 1 else own.robot for own in self._states], dtype=np.int64)
         self._names = simulation.categories
         self._kinds = self._kinds_of_categories(kinds_in(entries_of(metadata)))
+        self._lamps = lamps_in(entries_of(metadata))
         share = (np.arange(LIGHT_CELLS) + 0.5) / LIGHT_CELLS
         self._cell = share
         x, y = np.meshgrid(*(low[:, None] + (high - low)[:, None] * share))
@@ -83,7 +84,7 @@ class Stage:
             "columnNames": list(columns),
             "lightCells": LIGHT_CELLS,
             "walls": self._walls(),
-            "lamps": [],
+            "lamps": lamp_places(self._lamps),
             "membranes": self._membranes(owners),
             "bodyLinks": None,
             "palette": PALETTE,
