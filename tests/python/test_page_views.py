@@ -196,6 +196,20 @@ def test_arrows_lead_to_where_robots_are_a_second_later(replay: Replay) -> None:
     assert replay.beside(1, 0.0, 90.0).max() < 50
 
 
+@pytest.mark.parametrize("tail", [[], ["--tail", "15"]], ids=["5 s", "15 s"])
+def test_trails_are_as_long_as_the_tail(browser: Browser, tmp_path: Path, tail: list[str]) -> None:
+    rows = walkers(3, 41).assign(y=lambda frame: 100.0 + 40.0 * frame["time"])
+    page = Replay(browser, write(tmp_path / "run.feather", rows, view={"trails": True}), *tail)
+    page.value("replay.setTime(20)")
+    (x, y), mm = page.screen(0), page.pixels_per_mm
+    for seconds, is_shown in ((3.0, True), (10.0, bool(tail)), (17.0, False)):
+        ago = round(y - 40.0 * seconds * mm)
+        around = page.picture()[ago - 1 : ago + 2, round(x) - 3 : round(x) + 4]
+        assert bool((around != colour(PALETTE["floor"])).any()) == is_shown, seconds
+    assert page.said == []
+    page.page.close()
+
+
 def test_labels_are_inside_of_robots_and_stand_out(replay: Replay) -> None:
     replay.press("l")
     shown = replay.picture()

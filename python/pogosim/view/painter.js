@@ -93,7 +93,7 @@ function drawLamps() {
 
 // Each trail in a few pieces, every one in the colour of its time, fading into the past.
 function drawTrails() {
-    const start = run.track.indexAt(Math.max(state.time - state.tail, run.firstTime));
+    const start = run.track.indexAt(state.time - state.tail_s);
     if (state.index <= start) return;
     const pieces = Math.min(count > 300 ? 5 : 12, state.index - start);
     const stride = Math.max(1, Math.round((state.index - start) / (count > 300 ? 25 : 120)));

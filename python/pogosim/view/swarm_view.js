@@ -17,7 +17,8 @@ const element = (id) => root.getElementById(id);
 const canvas = element("arena");
 const poses = Array.from({length: count}, () => ({x: NaN, y: NaN, angle: NaN}));
 const state = {
-    time: run.times[0], index: 0, selected: -1, hovered: -1, followed: -1, tail: run.start.tail_s ?? TAIL_S, frames: 0, ratio: 0,
+    time: run.times[0], index: 0, selected: -1, hovered: -1, followed: -1, tail_s: run.start.tail_s ?? TAIL_S,
+    frames: 0, ratio: 0,
     shows: {},  // what is switched on, by the names of the switches
     colouring: run.columns[0], heat: "", heatColumn: null,
 };
