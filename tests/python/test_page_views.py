@@ -14,7 +14,9 @@ from chromium import CHROMIUM
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from pogosim.film.command import main
+from pogosim.film.timeline import timeline_of
 from pogosim.picture.palette import PALETTE, led_colours
+from pogosim.picture.swarm import OBJECT, read_recording
 from pogosim.view.beginning import view_of
 from recordings import walkers, write
 
@@ -184,7 +186,7 @@ def test_first_picture_has_the_colours_of_the_view(browser: Browser, tmp_path: P
 
 def test_arrows_lead_to_where_robots_are_a_second_later(replay: Replay) -> None:
     replay.press("v")
-    for time_s in (1.0, 1.2):
+    for time_s in (0.0, 1.0, 1.2):  # in the first record: as they move until the next
         replay.value(f"replay.setTime({time_s})")
         for robot, arrow in enumerate(replay.value("replay.arrows")):
             pose = replay.value(f"replay.pose({robot})")
@@ -192,8 +194,25 @@ def test_arrows_lead_to_where_robots_are_a_second_later(replay: Replay) -> None:
             np.testing.assert_allclose(arrow["to"], [pose["x"], pose["y"] + 100.0], atol=0.1)
     assert replay.beside(1, 0.0, 90.0).min() > 150  # the head
     assert replay.beside(1, 0.0, 110.0).max() < 50
-    replay.value("replay.setTime(0)")  # nothing has moved yet
-    assert replay.beside(1, 0.0, 90.0).max() < 50
+
+
+@pytest.mark.parametrize(("boundary", "mm_s"), [("solid", [0.0, 0.0]), ("periodic", [-800.0, 100.0])])
+def test_arrows_are_those_of_films(browser: Browser, tmp_path: Path, boundary: str, mm_s: list[float]) -> None:
+    rows = walkers()
+    rows.loc[(rows["robot_id"] == 0) & (rows["time"] > 0.9), "x"] += 600.0  # a jump of more than half the arena
+    rows.loc[(rows["robot_id"] == 1) & (rows["time"] > 0.9), "x"] += 50.0
+    data = write(tmp_path / "run.feather", rows, boundary_condition=boundary)
+    recording = read_recording(str(data))
+    line = timeline_of(recording, recording.last.rows, [OBJECT])
+    page = Replay(browser, data)
+    for time_s in (0.0, 0.7, 1.0, 1.2, 1.5, 2.0):
+        page.value(f"replay.setTime({time_s})")
+        shown = [np.subtract(arrow["to"], arrow["from"]) for arrow in page.value("replay.arrows")]
+        np.testing.assert_allclose(shown, line.velocities_at(time_s), atol=0.1)
+        if time_s == 1.0:
+            np.testing.assert_allclose(shown[:2], [mm_s, [100.0, 100.0]], atol=0.1)
+    assert page.said == []
+    page.page.close()
 
 
 @pytest.mark.parametrize("tail", [[], ["--tail", "15"]], ids=["5 s", "15 s"])

@@ -434,9 +434,8 @@ function drawScaleBar() {
 
 // Where objects would be a second later.
 function velocities() {
-    const share = run.track.shareAt(state.time, state.index);
     return Array.from(poses.keys(), (object) => {
-        const [dx, dy] = run.track.velocity(object, state.index, share);
+        const [dx, dy] = run.track.velocity(object, state.index);
         return {...poses[object], dx, dy};
     }).filter(({x, dx}, object) => x === x && dx === dx && !categoryOf(object).membrane);
 }
