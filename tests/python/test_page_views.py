@@ -156,6 +156,25 @@ def test_each_key_changes_the_picture_and_back(replay: Replay, key: str) -> None
     np.testing.assert_array_equal(replay.picture(), plain)
 
 
+@pytest.mark.parametrize("on", ["time", "scale_bar"])
+def test_time_and_scale_bar_go_off_together_and_then_on(replay: Replay, on: str) -> None:
+    replay.press("F9")
+    replay.page.uncheck({"time": "#scale_bar", "scale_bar": "#time"}[on])
+    for is_on in (False, True, False):
+        replay.press("F8")
+        chosen = replay.value("replay.chosen")
+        assert (chosen["time"], chosen["scale_bar"]) == (is_on, is_on)
+
+
+def test_the_key_of_the_density_switches_any_heat_map_off(replay: Replay) -> None:
+    replay.press("F9")
+    replay.page.select_option("#heat", "heard")
+    replay.page.locator("#arena").focus()
+    for heat in ("", "density", ""):
+        replay.press("d")
+        assert replay.value("replay.chosen")["heat_map"] == heat
+
+
 @pytest.mark.parametrize("palette", ["standard", "color_blind"])
 @pytest.mark.parametrize("theme", ["dark", "light"])
 def test_colours_are_those_of_theme_and_palette(replay: Replay, theme: str, palette: str) -> None:

@@ -272,7 +272,7 @@ const KEYS = {
     "=": () => setSpeed(nextSpeed(1)),
     "-": () => setSpeed(nextSpeed(-1)),
     ...switches.keys(),
-    d: () => heatBy(state.heat === DENSITY ? "" : DENSITY),
+    d: () => heatBy(state.heat ? "" : DENSITY),
     f: () => followSelected(state.followed < 0),
     0: fit,
     F9: () => toggleLooks(),

@@ -32,13 +32,13 @@ class Switches {
         for (const {id} of this.inputs) this.set(id, view[id]);
     }
 
-    // Returns what keys do, by the keys: all inputs of a key go the way of its first one.
+    // Returns what keys do, by the keys. Several boxes of a key go off if any is on.
     keys() {
         const press = (key) => {
-            const [first, ...others] = this.inputs.filter((input) => input.dataset.key === key);
-            const next = first.type === "checkbox" ? !first.checked
+            const inputs = this.inputs.filter((input) => input.dataset.key === key), [first] = inputs;
+            const next = first.type === "checkbox" ? !inputs.some((own) => own.checked)
                 : first.options[(first.selectedIndex + 1) % first.options.length].value;
-            for (const {id} of [first, ...others]) this.set(id, next);
+            for (const {id} of inputs) this.set(id, next);
         };
         const keys = this.inputs.map((input) => input.dataset.key).filter(Boolean);
         return Object.fromEntries(keys.map((key) => [key.length === 1 ? key.toLowerCase() : key, () => press(key)]));
