@@ -225,6 +225,13 @@ def test_colours_show_a_value(shown: Shown) -> None:
     assert len({colour for colour, level in zip(colours, levels, strict=True) if level == levels.min()}) == 1
 
 
+def test_key_says_that_no_values_have_come_yet(shown: Shown) -> None:
+    assert shown.value("(live.view.colourBy('light'), document.getElementById('key').innerText)").split() == [
+        *("light", "no", "values")
+    ]
+    shown.wait("document.querySelector('#key .ends').textContent.includes('1000')")
+
+
 def test_picture_and_film_are_saved(shown: Shown, tmp_path: Path) -> None:
     with shown.page.expect_download() as download:
         shown.page.click("#photo")
@@ -329,7 +336,7 @@ def test_page_begins_with_the_view_of_the_configuration(browser: Browser, hosted
         shown.wait(f"live.view.state.time === {simulation.time}")
         chosen = shown.value("live.view.chosen()")
         assert {key: chosen[key] for key in view if key != "zoom"} == {key: view[key] for key in view if key != "zoom"}
-        shown.wait("document.getElementById('key').textContent.includes('speed, mean')")
+        shown.wait("document.getElementById('key').textContent.includes('speed (mm/s)')")
         index = "live.run.columns.find(({name}) => name === 'NAME').value"
         speeds = shown.value(
             f"Array.from({{length: 12}}, (_, i) => {index.replace('NAME', 'speed')}(i, live.view.state.index))"

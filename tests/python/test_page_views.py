@@ -263,7 +263,7 @@ def test_labels_are_inside_of_robots_and_stand_out(replay: Replay) -> None:
 
 def test_density_is_that_of_a_normal_distribution(replay: Replay) -> None:
     replay.press("d")
-    assert replay.key() == ["robots", "per", "m²", "0", "100"]
+    assert replay.key() == ["robots", "per", "m2", "0", "100"]
     peak = 1.0 / (2.0 * np.pi * 0.04**2)  # per square metre
     for mm in (50.0, 70.0, 95.0):  # beyond the glow of its LED
         share = peak * np.exp(-0.5 * (mm / 40.0) ** 2) / 100.0
@@ -276,15 +276,24 @@ def test_density_is_that_of_a_normal_distribution(replay: Replay) -> None:
 def test_heat_map_shows_the_mean_of_a_column(replay: Replay) -> None:
     replay.press("F9")
     replay.page.select_option("#heat", "heard")  # 2, 12 and 22
-    assert replay.key() == ["heard,", "mean", "0", "24"]
+    assert replay.key() == ["heard", "0", "24"]
     for robot, value in ((0, 2.0), (2, 22.0)):
         expected = 0.85 * shade(value / 24.0) + 0.15 * np.array(colour(PALETTE["floor"]))
         np.testing.assert_allclose(replay.beside(robot, 50.0, 0.0), expected, atol=12)
     replay.page.select_option("#heat", "angle")  # all head down
+    assert replay.key() == ["angle", "(rad)", "-pi", "pi"]
     down = replay.beside(1, 50.0, 0.0)
     assert down[1] > 180  # a quarter of the circle from red on
     replay.page.select_option("#heat", "")
     assert not replay.page.is_visible("#key")
+
+
+def test_key_says_that_a_column_has_no_values(browser: Browser, tmp_path: Path) -> None:
+    page = Replay(browser, write(tmp_path / "run.feather", walkers().assign(heard=np.nan)))
+    page.value("replay.colourBy('heard')")
+    assert page.key() == ["heard", "no", "values"]
+    assert page.said == []
+    page.page.close()
 
 
 def test_canvas_has_the_pixels_of_the_screen(browser: Browser, data: Path) -> None:

@@ -108,7 +108,7 @@ function heatMap({space, colours, poses, column, index, robots}) {
             const share = at(density) / to;
             return [shade("number", share), Math.min(share / FAINT_SHARE, 1)];
         });
-        return {...size, picture, name: "robots per m²", from: 0, to, shades: "number"};
+        return {...size, picture, name: "robots per m2", from: 0, to, shades: "number"};
     }
     const {from, to} = column;
     const mean = (sums) => sums.map((sum, cell) => field.weight[cell] > 0 ? sum / field.weight[cell] : 0);
@@ -119,5 +119,5 @@ function heatMap({space, colours, poses, column, index, robots}) {
         const [x, y] = [at(along), at(across)];
         return [shade("angle", Math.atan2(y, x) / (2 * Math.PI) + 0.5), at(certainty) * Math.hypot(x, y)];
     });
-    return {...size, picture, name: `${column.name}, mean`, from, to, shades: column.shades};
+    return {...size, picture, name: column.name, from, to, shades: column.shades};
 }

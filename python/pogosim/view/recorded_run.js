@@ -62,6 +62,7 @@ class RecordedColumn {
     constructor(head, shown, codes, own) {
         Object.assign(this, own);
         Object.assign(this, {head, shown, codes, isListed: !own.base || own.led});
+        if (own.values?.length === 0) [this.from, this.to] = [Infinity, -Infinity];
         this.lights = own.led ? own.labels.map((label) => parseInt(label.slice(1), 16)) : null;
     }
 

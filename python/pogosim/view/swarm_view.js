@@ -198,6 +198,9 @@ function heading(text) {
     return own;
 }
 
+const UNITS = new Map([["speed", "mm/s"], ["x", "mm"], ["y", "mm"], ["angle", "rad"]]);  // as in src/sim/robot_values.cpp
+const titleOf = (name) => UNITS.has(name) ? `${name} (${UNITS.get(name)})` : name;
+
 // What the colours mean: a bar for numbers, a list for names, nothing for LEDs.
 function showKey() {
     const key = element("key");
@@ -205,14 +208,11 @@ function showKey() {
     key.hidden = !isOfRobots && !heat;
     key.replaceChildren();
     if (isOfRobots) showColouring(key);
-    if (heat) key.append(heading(heat.name), ...barOf(heat));
+    if (heat) key.append(heading(titleOf(heat.name)), ...barOf(heat));
 }
 
-const UNITS = {speed: "mm/s", angle: "rad"};
-
 function showColouring(key) {
-    const {name} = state.colouring;
-    key.append(heading(UNITS[name] ? `${name} (${UNITS[name]})` : name));
+    key.append(heading(titleOf(state.colouring.name)));
     if (state.colouring.labels && !state.colouring.base) {
         state.colouring.labels.slice(0, 40).forEach((label, i) => key.append(entry(label, state.colouring.colours[i])));
         if (state.colouring.labels.length > 40) key.append(`and ${state.colouring.labels.length - 40} more`);
@@ -227,17 +227,19 @@ function showColouring(key) {
     }
 }
 
-function barOf({from, to, shades}) {
+// What stands below both ends of a bar of colours, as in src/render/key_layer.cpp.
+function endsOf({from, to, shades}) {
+    if (shades === "angle") return ["-pi", "pi"];
+    return from <= to ? [from, to].map((value) => String(Number(value.toPrecision(4)))) : ["no values", ""];
+}
+
+function barOf(scale) {
     const bar = document.createElement("div");
     bar.className = "bar";
-    bar.style.background = `linear-gradient(to right, ${run.colours.shades[shades].filter((_, i) => i % 15 === 0).join(", ")})`;
+    bar.style.background = `linear-gradient(to right, ${run.colours.shades[scale.shades].filter((_, i) => i % 15 === 0).join(", ")})`;
     const ends = document.createElement("div");
     ends.className = "ends";
-    ends.append(...[from, to].map((value) => {
-        const end = document.createElement("span");
-        end.textContent = String(Number(value.toPrecision(4)));
-        return end;
-    }));
+    ends.append(...endsOf(scale).map((text) => Object.assign(document.createElement("span"), {textContent: text})));
     return [bar, ends];
 }
 
