@@ -1,8 +1,5 @@
 // A run that is over: the tables of a page, and the player that shows them again.
 
-const MISSING = 65535;
-const LEVELS = 65534;
-
 // Undoes what packing.py does: text to tables of 16-bit codes, object by object.
 async function readTables(packed, shapes) {
     const text = atob(packed);
@@ -47,8 +44,7 @@ class RecordedTrack extends Track {
         super(times, space);
         this.values = ["x", "y", "angle"].map((name) => {
             const {table, low, high} = poses[name];
-            const span = high > low ? high - low : 1;
-            return Float32Array.from(tables[table], (code) => code === MISSING ? NaN : low + span * code / LEVELS);
+            return Float32Array.from(tables[table], (code) => decoded(code, low, high));
         });
     }
 
@@ -74,7 +70,7 @@ class RecordedColumn {
         const code = this.code(object, index);
         if (code === MISSING) return null;
         if (this.labels) return this.labels[code];
-        return this.values ? this.values[code] : this.low + (this.high - this.low) * code / LEVELS;
+        return this.values ? this.values[code] : decoded(code, this.low, this.high);
     }
 
     colour(object, index) {

@@ -1,5 +1,11 @@
 // Where objects are at any time, between the times of a record. See Timeline.at() in timeline.py.
 
+const MISSING = 65535;  // the code of what has no value
+const LEVELS = 65534;  // the highest other code
+
+// The number that a code of 16 bits stands for, see packing.py; NaN: there is none.
+const decoded = (code, low, high) => code === MISSING ? NaN : low + (high - low) * code / LEVELS;
+
 class Track {
     // times: ascending, s. Classes that extend this one know x(object, index), y and angle.
     constructor(times, space) {
