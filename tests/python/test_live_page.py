@@ -190,6 +190,7 @@ def test_robot_is_dragged(shown: Shown) -> None:
     shown.page.mouse.up()
     wait_for(lambda: np.allclose(shown.simulation.positions[0], (560.0, 500.0), atol=3.0))
     assert not np.allclose(before, shown.simulation.positions[0], atol=3.0)
+    shown.wait("Math.hypot(live.view.poses[0].x - 560, live.view.poses[0].y - 500) < 3")  # the run is paused
     camera = shown.value("[live.view.camera.x, live.view.camera.y]")
     shown.page.mouse.move(30, 300)  # beside the arena: this moves the picture
     shown.page.mouse.down()

@@ -38,10 +38,7 @@ function takeBytes(data) {
     }
     const number = run.add(data);
     send({do: "shown", frame: number});
-    if (view) {
-        if (!player.follows) view.setTime(view.state.time);
-        return view.redraw();
-    }
+    if (view) return view.setTime(view.state.time);  // of a paused run: another record of that time, as after a drag
     player = new LivePlayer(run, act);
     player.keys = {...player.keys, p: () => toggle("settings", "adjust"), m: () => toggle("said", "lines"), s: savePicture};
     run.start = {...run.start, ...begin.kept.start};
