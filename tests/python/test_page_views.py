@@ -273,6 +273,34 @@ def test_density_is_that_of_a_normal_distribution(replay: Replay) -> None:
     assert replay.beside(1, 0.0, 250.0).tolist() == colour(PALETTE["floor"])
 
 
+def test_heat_map_is_computed_when_it_changes(replay: Replay) -> None:
+    replay.press("d")
+    replay.picture()
+    replay.value(
+        """() => {
+            const Canvas = OffscreenCanvas;
+            window.canvases = 0;
+            window.OffscreenCanvas = class extends Canvas {
+                constructor(...size) { super(...size); window.canvases++; }
+            };
+        }"""
+    )
+    frames = replay.value("replay.frames")
+    for x in (300, 320, 340):
+        replay.page.mouse.move(x, 300)
+        replay.picture()
+    assert (replay.value("replay.frames") > frames, replay.value("canvases")) == (True, 0)
+    for change in ("replay.setTime(1.5)", "replay.setTime(1)"):
+        before = replay.value("canvases")
+        replay.value(change)
+        replay.picture()
+        assert replay.value("canvases") == before + 1
+    before = replay.value("canvases")
+    replay.press("t")
+    replay.picture()
+    assert replay.value("canvases") > before
+
+
 def test_heat_map_shows_the_mean_of_a_column(replay: Replay) -> None:
     replay.press("F9")
     replay.page.select_option("#heat", "heard")  # 2, 12 and 22

@@ -14,6 +14,7 @@ POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inli
 # What every view needs, each file after those that it uses.
 COMMON = (
     "space.js",
+    "cache.js",
     "colours.js",
     "tracks.js",
     "light.js",

@@ -81,6 +81,7 @@ class LiveRun {
         this.dots = head.membranes ? new GrowingTrack(this.times, this.space, head.membranes.dots, head.poseBox) : null;
         this.reader = new FrameReader(head.objects.length, head.membranes ? head.membranes.dots : 0);
         this.bodyLinks = head.bodyLinks;
+        this.version = 0;
         this.light = null;
         this.robot = {object: -1, values: {}};
         this.colours = new Colours(head.palette);
@@ -117,6 +118,7 @@ class LiveRun {
         if (time === this.times[this.times.length - 1]) this.forget(this.times.length - 1);
         if (this.times.length >= this.most) this.forget(1, true);
         const count = this.head.objects.length;
+        this.version++;
         this.times.push(time);
         this.track.add(this.reader.tables[0].codes, true);
         if (this.dots) this.dots.add(this.reader.tables[2].codes, false);

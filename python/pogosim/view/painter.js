@@ -18,10 +18,10 @@ const categoryOf = (object) => head.categories[head.objects[object][0]];
 const floor = new Path2D();
 head.polygons.forEach((line) => pathOf(floor, line));
 
-const glows = new Map();
+const glows = new Cache(MAX_SPRITES);
 
 function glowOf(colour) {
-    if (!glows.has(colour)) {
+    return glows.get(colour, () => {
         const sprite = new OffscreenCanvas(64, 64);
         const ink = sprite.getContext("2d");
         const gradient = ink.createRadialGradient(32, 32, 32 / GLOW, 32, 32, 32);
@@ -30,9 +30,8 @@ function glowOf(colour) {
         gradient.addColorStop(1, colour + "00");
         ink.fillStyle = gradient;
         ink.fillRect(0, 0, 64, 64);
-        glows.set(colour, sprite.transferToImageBitmap());
-    }
-    return glows.get(colour);
+        return sprite.transferToImageBitmap();
+    });
 }
 
 // The colour of an object now. What has no LED is blue-grey, as where a column has no value.
@@ -48,10 +47,13 @@ function drawFloor() {
 
 const robots = Array.from(poses.keys()).filter((object) => !categoryOf(object).passive && !categoryOf(object).membrane);
 
+const maps = new Cache(1);
+
 // Returns what its colours mean; null: there is no heat map.
 function drawHeatMap() {
     if (!state.heat) return null;
-    const map = heatMap({space, colours, poses, column: state.heatColumn, index: state.index, robots});
+    const map = maps.get([state.time, run.version, state.heat, colours.version].join(), () =>
+        heatMap({space, colours, poses, column: state.heatColumn, index: state.index, robots}));
     pen.drawImage(map.picture, ...space.low, map.width, map.height);
     return map;
 }
@@ -261,17 +263,14 @@ function bodyPath(own, x, y, angle, scale = 1) {
 }
 
 // Small disks with their rims as pictures, made once for each colour and zoom; twice as fine as the screen.
-const sprites = new Map();  // by radius, then by colour
-let spriteCount = 0, spritePixel = 0, spriteVersion = 0;
+let sprites = new Cache(MAX_SPRITES), spritePixel = 0, spriteVersion = 0;
 
 function spriteOf(colour, radius, pixel) {
-    if (pixel !== spritePixel || colours.version !== spriteVersion || spriteCount >= MAX_SPRITES) {
-        sprites.clear();
-        [spriteCount, spritePixel, spriteVersion] = [0, pixel, colours.version];
+    if (pixel !== spritePixel || colours.version !== spriteVersion) {
+        sprites = new Cache(MAX_SPRITES);
+        [spritePixel, spriteVersion] = [pixel, colours.version];
     }
-    if (!sprites.has(radius)) sprites.set(radius, new Map());
-    let sprite = sprites.get(radius).get(colour);
-    if (!sprite) {
+    return sprites.get(`${colour} ${radius}`, () => {
         const half = Math.ceil(radius / pixel) + 2;
         const picture = new OffscreenCanvas(4 * half, 4 * half);
         const ink = picture.getContext("2d");
@@ -281,11 +280,8 @@ function spriteOf(colour, radius, pixel) {
         ink.strokeStyle = colours.edge;
         ink.lineWidth = 2 * 1.2 * (window.devicePixelRatio || 1);
         ink.stroke();
-        sprite = {image: picture.transferToImageBitmap(), reach: half * pixel};
-        sprites.get(radius).set(colour, sprite);
-        spriteCount++;
-    }
-    return sprite;
+        return {image: picture.transferToImageBitmap(), reach: half * pixel};
+    });
 }
 
 function drawBodies() {
@@ -456,10 +452,6 @@ function drawMarks() {
 
 // Returns what the colours of the heat map mean; null: there is none.
 function draw() {
-    if (state.followed >= 0) {
-        const {x, y} = poses[state.followed];
-        if (x === x) camera.moveTo(x, y);
-    }
     const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.fillStyle = colours.paper;

@@ -92,6 +92,7 @@ class RecordedRun {
         this.track = new RecordedTrack(tables, head.poses, this.times, this.space);
         this.dots = head.membranes
             ? new RecordedTrack(tables, head.membranes.poses, Float64Array.from(head.membranes.times), this.space) : null;
+        this.version = 0;
         this.bodyLinks = head.bodyLinks;
         this.colours = new Colours(head.palette);
         this.lights = head.lights.map(([from, table]) => ({from, light: new Light(head.lightCells, tables[table])}));

@@ -6,8 +6,8 @@ const TAIL_S = 5;
 //
 // root: the document, or a shadow root, that has these elements.
 // run: what is shown, a RecordedRun or a LiveRun: head, space, colours, times, track, dots, columns, bodyLinks,
-//     lightAt(index), wallColour(wall, index); start: how it begins: speed, tail_s, and view, the section of that name of a
-//     configuration; moreValues(object).
+//     lightAt(index), wallColour(wall, index); version, which grows with each record that comes; moreValues(object);
+//     start: how it begins: speed, tail_s, and view, the section of that name of a configuration.
 // player: what moves time: isPlaying, toggle(), step(records), setSpeed(speed), speeds, seek(time), tick(now);
 //     optional: drag(object, x, y), select(object), showColumns(names), keys.
 function swarmView(root, run, player) {
@@ -25,7 +25,8 @@ const state = {
 const camera = new Camera(canvas, run.space);
 const painter = makePainter({run, canvas, camera, poses, state});
 const {categoryOf, colourOf} = painter;
-const switches = new Switches(root, state.shows, (name) => {
+const ended = new AbortController();  // of all that listens
+const switches = new Switches(root, state.shows, listen, (name) => {
     if (name === "theme" || name === "palette") {
         run.colours.choose(state.shows.theme, state.shows.palette);
         showKey();
@@ -33,7 +34,6 @@ const switches = new Switches(root, state.shows, (name) => {
     element("clock").hidden = !state.shows.time;
     dirty = true;
 });
-const ended = new AbortController();  // of all that listens
 let dirty = true, heatKey = null;
 
 function redraw() {
@@ -123,6 +123,10 @@ function objectAt(px, py, slack) {
 }
 
 function draw() {
+    if (state.followed >= 0) {
+        const {x, y} = poses[state.followed];
+        if (x === x) camera.moveTo(x, y);
+    }
     const heat = painter.draw();
     if (heat?.to !== heatKey?.to || heat?.from !== heatKey?.from || heat?.name !== heatKey?.name) {
         heatKey = heat;
