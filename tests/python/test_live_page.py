@@ -142,7 +142,7 @@ def test_speed_is_chosen(shown: Shown) -> None:
     wait_for(lambda: shown.simulation.is_over)
     shown.wait("document.getElementById('title').textContent.includes('the run is over')")
     shown.page.click("#play")
-    wait_for(lambda: "reset it to play it again" in shown.text("told"))
+    wait_for(lambda: "reset it to play it again" in shown.text("notice"))
 
 
 def test_lamps_are_suns(shown: Shown) -> None:
@@ -235,7 +235,7 @@ def test_key_says_that_no_values_have_come_yet(shown: Shown) -> None:
 
 def test_picture_and_film_are_saved(shown: Shown, tmp_path: Path) -> None:
     with shown.page.expect_download() as download:
-        shown.page.click("#photo")
+        shown.page.click("#save_picture")
     assert download.value.suggested_filename == "swarm_0.00s.png"
     download.value.save_as(tmp_path / "picture.png")
     with Image.open(tmp_path / "picture.png") as picture:

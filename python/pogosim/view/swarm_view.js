@@ -258,10 +258,10 @@ function entry(label, colour) {
 
 // ---- controls
 
-function toggleLooks() {
-    const looks = element("looks");
-    looks.hidden = !looks.hidden;
-    element("look").setAttribute("aria-expanded", String(!looks.hidden));
+function toggleViewPanel() {
+    const panel = element("view_panel");
+    panel.hidden = !panel.hidden;
+    element("view_button").setAttribute("aria-expanded", String(!panel.hidden));
 }
 
 function toggleHelp(show = element("help").hidden) {
@@ -281,7 +281,7 @@ const KEYS = {
     d: () => heatBy(state.heat ? "" : DENSITY),
     f: () => followSelected(state.followed < 0),
     0: fit,
-    F9: () => toggleLooks(),
+    F9: () => toggleViewPanel(),
     "?": () => toggleHelp(),
     Escape: () => { toggleHelp(false); select(-1); follow(-1); },
     ...player.keys,
@@ -322,9 +322,9 @@ function listenToControls() {
     listen(element("colour"), "change", (event) => colourBy(event.target.value));
     listen(element("heat"), "change", (event) => heatBy(event.target.value));
     listen(element("follow"), "change", (event) => followSelected(event.target.checked));
-    listen(element("look"), "click", toggleLooks);
+    listen(element("view_button"), "click", toggleViewPanel);
     listen(element("fit"), "click", fit);
-    listen(element("ask"), "click", () => toggleHelp());
+    listen(element("help_button"), "click", () => toggleHelp());
     const resized = new ResizeObserver(resize);
     resized.observe(canvas);
     ended.signal.addEventListener("abort", () => resized.disconnect());
@@ -350,12 +350,12 @@ function fillColours() {
 }
 
 // Shows what a configuration says.
-function begin(view) {
-    switches.begin(view);
-    colourBy((run.columns.find((column) => column.name === view.color_by) ?? run.columns[0]).name);
-    heatBy(view.heat_map ?? "");
-    camera.fit(view.zoom ?? 1);
-    follow(head.objects.findIndex(([category, id]) => id === view.follow && !head.categories[category].passive));
+function begin(viewOptions) {
+    switches.begin(viewOptions);
+    colourBy((run.columns.find((column) => column.name === viewOptions.color_by) ?? run.columns[0]).name);
+    heatBy(viewOptions.heat_map ?? "");
+    camera.fit(viewOptions.zoom ?? 1);
+    follow(head.objects.findIndex(([category, id]) => id === viewOptions.follow && !head.categories[category].passive));
 }
 
 // Returns what is shown, as a configuration says it.

@@ -29,8 +29,8 @@ class Switches {
         this.changed(name);
     }
 
-    begin(view) {
-        for (const {id} of this.inputs) this.set(id, view[id]);
+    begin(viewOptions) {
+        for (const {id} of this.inputs) this.set(id, viewOptions[id]);
     }
 
     // Returns what keys do, by the keys. Several boxes of a key go off if any is on.
