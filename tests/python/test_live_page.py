@@ -142,7 +142,7 @@ def test_speed_is_chosen(shown: Shown) -> None:
     wait_for(lambda: shown.simulation.is_over)
     shown.wait("document.getElementById('title').textContent.includes('the run is over')")
     shown.page.click("#play")
-    wait_for(lambda: "reset it to play it again" in shown.text("told"))
+    wait_for(lambda: "reset it to play it again" in shown.text("notice"))
 
 
 def test_lamps_are_suns(shown: Shown) -> None:
@@ -190,6 +190,7 @@ def test_robot_is_dragged(shown: Shown) -> None:
     shown.page.mouse.up()
     wait_for(lambda: np.allclose(shown.simulation.positions[0], (560.0, 500.0), atol=3.0))
     assert not np.allclose(before, shown.simulation.positions[0], atol=3.0)
+    shown.wait("Math.hypot(live.view.poses[0].x - 560, live.view.poses[0].y - 500) < 3")  # the run is paused
     camera = shown.value("[live.view.camera.x, live.view.camera.y]")
     shown.page.mouse.move(30, 300)  # beside the arena: this moves the picture
     shown.page.mouse.down()
@@ -225,9 +226,16 @@ def test_colours_show_a_value(shown: Shown) -> None:
     assert len({colour for colour, level in zip(colours, levels, strict=True) if level == levels.min()}) == 1
 
 
+def test_key_says_that_no_values_have_come_yet(shown: Shown) -> None:
+    assert shown.value("(live.view.colourBy('light'), document.getElementById('key').innerText)").split() == [
+        *("light", "no", "values")
+    ]
+    shown.wait("document.querySelector('#key .ends').textContent.includes('1000')")
+
+
 def test_picture_and_film_are_saved(shown: Shown, tmp_path: Path) -> None:
     with shown.page.expect_download() as download:
-        shown.page.click("#photo")
+        shown.page.click("#save_picture")
     assert download.value.suggested_filename == "swarm_0.00s.png"
     download.value.save_as(tmp_path / "picture.png")
     with Image.open(tmp_path / "picture.png") as picture:
@@ -329,7 +337,7 @@ def test_page_begins_with_the_view_of_the_configuration(browser: Browser, hosted
         shown.wait(f"live.view.state.time === {simulation.time}")
         chosen = shown.value("live.view.chosen()")
         assert {key: chosen[key] for key in view if key != "zoom"} == {key: view[key] for key in view if key != "zoom"}
-        shown.wait("document.getElementById('key').textContent.includes('speed, mean')")
+        shown.wait("document.getElementById('key').textContent.includes('speed (mm/s)')")
         index = "live.run.columns.find(({name}) => name === 'NAME').value"
         speeds = shown.value(
             f"Array.from({{length: 12}}, (_, i) => {index.replace('NAME', 'speed')}(i, live.view.state.index))"

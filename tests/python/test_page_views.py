@@ -14,7 +14,9 @@ from chromium import CHROMIUM
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from pogosim.film.command import main
+from pogosim.film.timeline import timeline_of
 from pogosim.picture.palette import PALETTE, led_colours
+from pogosim.picture.swarm import OBJECT, read_recording
 from pogosim.view.beginning import view_of
 from recordings import walkers, write
 
@@ -154,6 +156,25 @@ def test_each_key_changes_the_picture_and_back(replay: Replay, key: str) -> None
     np.testing.assert_array_equal(replay.picture(), plain)
 
 
+@pytest.mark.parametrize("on", ["time", "scale_bar"])
+def test_time_and_scale_bar_go_off_together_and_then_on(replay: Replay, on: str) -> None:
+    replay.press("F9")
+    replay.page.uncheck({"time": "#scale_bar", "scale_bar": "#time"}[on])
+    for is_on in (False, True, False):
+        replay.press("F8")
+        chosen = replay.value("replay.chosen")
+        assert (chosen["time"], chosen["scale_bar"]) == (is_on, is_on)
+
+
+def test_the_key_of_the_density_switches_any_heat_map_off(replay: Replay) -> None:
+    replay.press("F9")
+    replay.page.select_option("#heat", "heard")
+    replay.page.locator("#arena").focus()
+    for heat in ("", "density", ""):
+        replay.press("d")
+        assert replay.value("replay.chosen")["heat_map"] == heat
+
+
 @pytest.mark.parametrize("palette", ["standard", "color_blind"])
 @pytest.mark.parametrize("theme", ["dark", "light"])
 def test_colours_are_those_of_theme_and_palette(replay: Replay, theme: str, palette: str) -> None:
@@ -184,7 +205,7 @@ def test_first_picture_has_the_colours_of_the_view(browser: Browser, tmp_path: P
 
 def test_arrows_lead_to_where_robots_are_a_second_later(replay: Replay) -> None:
     replay.press("v")
-    for time_s in (1.0, 1.2):
+    for time_s in (0.0, 1.0, 1.2):  # in the first record: as they move until the next
         replay.value(f"replay.setTime({time_s})")
         for robot, arrow in enumerate(replay.value("replay.arrows")):
             pose = replay.value(f"replay.pose({robot})")
@@ -192,8 +213,39 @@ def test_arrows_lead_to_where_robots_are_a_second_later(replay: Replay) -> None:
             np.testing.assert_allclose(arrow["to"], [pose["x"], pose["y"] + 100.0], atol=0.1)
     assert replay.beside(1, 0.0, 90.0).min() > 150  # the head
     assert replay.beside(1, 0.0, 110.0).max() < 50
-    replay.value("replay.setTime(0)")  # nothing has moved yet
-    assert replay.beside(1, 0.0, 90.0).max() < 50
+
+
+@pytest.mark.parametrize(("boundary", "mm_s"), [("solid", [0.0, 0.0]), ("periodic", [-800.0, 100.0])])
+def test_arrows_are_those_of_films(browser: Browser, tmp_path: Path, boundary: str, mm_s: list[float]) -> None:
+    rows = walkers()
+    rows.loc[(rows["robot_id"] == 0) & (rows["time"] > 0.9), "x"] += 600.0  # a jump of more than half the arena
+    rows.loc[(rows["robot_id"] == 1) & (rows["time"] > 0.9), "x"] += 50.0
+    data = write(tmp_path / "run.feather", rows, boundary_condition=boundary)
+    recording = read_recording(str(data))
+    line = timeline_of(recording, recording.last.rows, [OBJECT])
+    page = Replay(browser, data)
+    for time_s in (0.0, 0.7, 1.0, 1.2, 1.5, 2.0):
+        page.value(f"replay.setTime({time_s})")
+        shown = [np.subtract(arrow["to"], arrow["from"]) for arrow in page.value("replay.arrows")]
+        np.testing.assert_allclose(shown, line.velocities_at(time_s), atol=0.1)
+        if time_s == 1.0:
+            np.testing.assert_allclose(shown[:2], [mm_s, [100.0, 100.0]], atol=0.1)
+    assert page.said == []
+    page.page.close()
+
+
+@pytest.mark.parametrize("tail", [[], ["--tail", "15"]], ids=["5 s", "15 s"])
+def test_trails_are_as_long_as_the_tail(browser: Browser, tmp_path: Path, tail: list[str]) -> None:
+    rows = walkers(3, 41).assign(y=lambda frame: 100.0 + 40.0 * frame["time"])
+    page = Replay(browser, write(tmp_path / "run.feather", rows, view={"trails": True}), *tail)
+    page.value("replay.setTime(20)")
+    (x, y), mm = page.screen(0), page.pixels_per_mm
+    for seconds, is_shown in ((3.0, True), (10.0, bool(tail)), (17.0, False)):
+        ago = round(y - 40.0 * seconds * mm)
+        around = page.picture()[ago - 1 : ago + 2, round(x) - 3 : round(x) + 4]
+        assert bool((around != colour(PALETTE["floor"])).any()) == is_shown, seconds
+    assert page.said == []
+    page.page.close()
 
 
 def test_labels_are_inside_of_robots_and_stand_out(replay: Replay) -> None:
@@ -211,7 +263,7 @@ def test_labels_are_inside_of_robots_and_stand_out(replay: Replay) -> None:
 
 def test_density_is_that_of_a_normal_distribution(replay: Replay) -> None:
     replay.press("d")
-    assert replay.key() == ["robots", "per", "m²", "0", "100"]
+    assert replay.key() == ["robots", "per", "m2", "0", "100"]
     peak = 1.0 / (2.0 * np.pi * 0.04**2)  # per square metre
     for mm in (50.0, 70.0, 95.0):  # beyond the glow of its LED
         share = peak * np.exp(-0.5 * (mm / 40.0) ** 2) / 100.0
@@ -221,18 +273,55 @@ def test_density_is_that_of_a_normal_distribution(replay: Replay) -> None:
     assert replay.beside(1, 0.0, 250.0).tolist() == colour(PALETTE["floor"])
 
 
+def test_heat_map_is_computed_when_it_changes(replay: Replay) -> None:
+    replay.press("d")
+    replay.picture()
+    replay.value(
+        """() => {
+            const Canvas = OffscreenCanvas;
+            window.canvases = 0;
+            window.OffscreenCanvas = class extends Canvas {
+                constructor(...size) { super(...size); window.canvases++; }
+            };
+        }"""
+    )
+    frames = replay.value("replay.frames")
+    for x in (300, 320, 340):
+        replay.page.mouse.move(x, 300)
+        replay.picture()
+    assert (replay.value("replay.frames") > frames, replay.value("canvases")) == (True, 0)
+    for change in ("replay.setTime(1.5)", "replay.setTime(1)"):
+        before = replay.value("canvases")
+        replay.value(change)
+        replay.picture()
+        assert replay.value("canvases") == before + 1
+    before = replay.value("canvases")
+    replay.press("t")
+    replay.picture()
+    assert replay.value("canvases") > before
+
+
 def test_heat_map_shows_the_mean_of_a_column(replay: Replay) -> None:
     replay.press("F9")
     replay.page.select_option("#heat", "heard")  # 2, 12 and 22
-    assert replay.key() == ["heard,", "mean", "0", "24"]
+    assert replay.key() == ["heard", "0", "24"]
     for robot, value in ((0, 2.0), (2, 22.0)):
         expected = 0.85 * shade(value / 24.0) + 0.15 * np.array(colour(PALETTE["floor"]))
         np.testing.assert_allclose(replay.beside(robot, 50.0, 0.0), expected, atol=12)
     replay.page.select_option("#heat", "angle")  # all head down
+    assert replay.key() == ["angle", "(rad)", "-pi", "pi"]
     down = replay.beside(1, 50.0, 0.0)
     assert down[1] > 180  # a quarter of the circle from red on
     replay.page.select_option("#heat", "")
     assert not replay.page.is_visible("#key")
+
+
+def test_key_says_that_a_column_has_no_values(browser: Browser, tmp_path: Path) -> None:
+    page = Replay(browser, write(tmp_path / "run.feather", walkers().assign(heard=np.nan)))
+    page.value("replay.colourBy('heard')")
+    assert page.key() == ["heard", "no", "values"]
+    assert page.said == []
+    page.page.close()
 
 
 def test_canvas_has_the_pixels_of_the_screen(browser: Browser, data: Path) -> None:

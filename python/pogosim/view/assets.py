@@ -14,11 +14,15 @@ POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inli
 # What every view needs, each file after those that it uses.
 COMMON = (
     "space.js",
+    "cache.js",
     "colours.js",
     "tracks.js",
     "light.js",
     "heat_map.js",
     "marks.js",
+    "trails.js",
+    "links.js",
+    "body_links.js",
     "painter.js",
     "switches.js",
     "pointers.js",

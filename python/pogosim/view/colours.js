@@ -1,14 +1,18 @@
-// The colours of a view by its theme and palette, as src/render/colours.cpp has them. All are those of palette.json.
+// The colours of a view by its theme and palette, as in src/render/theme_colours.cpp: those of palette.json, and the circle of
+// hues for directions.
 
 const SHADES = 256;  // of the colours of values
+const MOST_COLOURS = 4000;  // of LEDs that are kept
 const TURN = ["#ff0000", "#ffff00", "#00ff00", "#00ffff", "#0000ff", "#ff00ff"];  // hues of directions
 
 const channelsOf = (colour) => colour.match(/\w\w/g).map((text) => parseInt(text, 16));
 const hexOf = (channels) => `#${channels.map((own) => Math.round(own).toString(16).padStart(2, "0")).join("")}`;
 const mixed = (from, to, share) => from.map((own, i) => own + share * (to[i] - own));
+const shadeAt = (shades, share) => shades[Math.min(Math.max(Math.floor(share * SHADES), 0), SHADES - 1)];
 const luma = ([red, green, blue]) => 0.299 * red + 0.587 * green + 0.114 * blue;  // ITU-R BT.601, 0 to 255
 
-// Between the colours of a list, at a place from 0 on; it goes on with the first one behind the last.
+// The colour at a place in a closed circle of colours: 0 is the first, 0.5 half way to the second; after the last comes the
+// first again.
 function between(colours, place) {
     const low = Math.floor(place);
     const [from, to] = [low, low + 1].map((i) => channelsOf(colours[i % colours.length]));
@@ -52,8 +56,10 @@ class Colours {
             number: shades((share) => hexOf(between(this.colour_map, share * most))),
             angle: shades((share) => hexOf(between(hues, hues.length * (share + 0.5)))),  // from -pi; 0 is red
         };
-        this.leds = new Map();
-        this.contrasts = new Map();
+        const channels = ([name, own]) => [name, own.map(channelsOf)];
+        this.shadeChannels = Object.fromEntries(Object.entries(this.shades).map(channels));  // [red, green, blue] of each
+        this.leds = new Cache(MOST_COLOURS);
+        this.contrasts = new Cache(MOST_COLOURS);
         this.version++;
     }
 
@@ -61,15 +67,14 @@ class Colours {
     ofLed(packed, dark = this.dark_led) {
         if (!packed) return dark;
         if (packed > 0xffffff) return this.no_led;
-        if (!this.leds.has(packed)) {
+        return this.leds.get(packed, () => {
             const channels = [packed >> 16, packed >> 8 & 255, packed & 255].map((value) => {
                 const share = Math.min(Math.max((value - this.dimmest_led) / (this.brightest_led - this.dimmest_led), 0), 1);
                 const [low, high] = [this.dimmest_led_on_screen, this.brightest_led_on_screen];
                 return value ? Math.round(low + share * (high - low)) : 0;
             });
-            this.leds.set(packed, this.ofLight(hexOf(channels)));
-        }
-        return this.leds.get(packed);
+            return this.ofLight(hexOf(channels));
+        });
     }
 
     // The colour of a light on the screen: for people with any colour vision, the same brightness in a distinct hue.
@@ -86,15 +91,12 @@ class Colours {
     // The colour of a value between two limits; `shades`: of a "number" or an "angle".
     ofValue(shades, value, from, to) {
         const place = to > from ? (value - from) / (to - from) : 0.5;
-        return this.shades[shades][Math.min(Math.max(Math.floor(place * SHADES), 0), SHADES - 1)];
+        return shadeAt(this.shades[shades], place);
     }
 
     // Whichever stands out from another colour.
     contrastTo(colour) {
-        if (!this.contrasts.has(colour)) {
-            this.contrasts.set(colour, luma(channelsOf(colour)) > 64 ? this.edge : this.paper);
-        }
-        return this.contrasts.get(colour);
+        return this.contrasts.get(colour, () => luma(channelsOf(colour)) > 64 ? this.edge : this.paper);
     }
 
     // Whichever has the larger contrast ratio to another colour (WCAG 2.1).

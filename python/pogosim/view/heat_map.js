@@ -1,4 +1,5 @@
-// A heat map: where robots are, or a value of those nearby, as src/render/heat_field.cpp computes it.
+// A heat map: where robots are, or a value of those nearby. The field is that of src/render/heat_field.cpp, its colours those
+// of heat_layer.cpp; their constants must stay the same.
 
 const DEVIATION = 0.04;  // of the longer side of the arena
 const CELLS_PER_DEVIATION = 2;
@@ -59,8 +60,8 @@ class HeatField {
         return this.weight.map((weight) => weight / (2 * Math.PI * deviation ** 2));
     }
 
-    // A picture of the field. shadeOf(at): colour, red, green and blue, and opacity, 0 to 1; at(table): a table of cells
-    // at this dot, interpolated.
+    // The field as an image. shadeOf(at) returns the colour of a dot ([red, green, blue]) and its opacity, 0 to 1; at(table)
+    // gives it the value of a table of cells there, interpolated.
     picture(shadeOf) {
         const [width, height] = [this.columns * DOTS_PER_CELL, this.rows * DOTS_PER_CELL];
         const image = new ImageData(width, height);
@@ -97,8 +98,7 @@ function heatMap({space, colours, poses, column, index, robots}) {
         if (!(x === x) || typeof value !== "number" || !Number.isFinite(value)) continue;
         if (isAngle) field.add(x, y, Math.cos(value), Math.sin(value)); else field.add(x, y, value);
     }
-    const shades = Object.fromEntries(Object.entries(colours.shades).map(([name, own]) => [name, own.map(channelsOf)]));
-    const shade = (kind, share) => shades[kind][Math.min(Math.max(Math.floor(share * SHADES), 0), SHADES - 1)];
+    const shade = (kind, share) => shadeAt(colours.shadeChannels[kind], share);
     const size = {width: field.columns * field.cell, height: field.rows * field.cell};
     if (!column) {
         const density = field.density();
@@ -108,7 +108,7 @@ function heatMap({space, colours, poses, column, index, robots}) {
             const share = at(density) / to;
             return [shade("number", share), Math.min(share / FAINT_SHARE, 1)];
         });
-        return {...size, picture, name: "robots per m²", from: 0, to, shades: "number"};
+        return {...size, picture, name: "robots per m2", from: 0, to, shades: "number"};
     }
     const {from, to} = column;
     const mean = (sums) => sums.map((sum, cell) => field.weight[cell] > 0 ? sum / field.weight[cell] : 0);
@@ -119,5 +119,5 @@ function heatMap({space, colours, poses, column, index, robots}) {
         const [x, y] = [at(along), at(across)];
         return [shade("angle", Math.atan2(y, x) / (2 * Math.PI) + 0.5), at(certainty) * Math.hypot(x, y)];
     });
-    return {...size, picture, name: `${column.name}, mean`, from, to, shades: column.shades};
+    return {...size, picture, name: column.name, from, to, shades: column.shades};
 }

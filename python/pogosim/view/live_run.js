@@ -1,7 +1,5 @@
 // A run that goes on: frames as they come, see frames.py, and the player that steers it.
 
-const LIVE_MISSING = 65535;
-const LIVE_LEVELS = 65534;
 const MOST_CELLS = 6e6;  // poses that are kept, over all times
 const FRAME = 1, LIGHT = 2;
 const COLUMN = 3;  // number of the first table of a column
@@ -55,19 +53,15 @@ class GrowingTrack extends Track {
         Object.assign(this, {count, box, records: []});
     }
 
-    decoded(codes, column, low, high) {
-        const values = new Float32Array(this.count), scale = (high - low) / LIVE_LEVELS;
-        for (let i = 0; i < this.count; i++) {
-            const code = codes[column * this.count + i];
-            values[i] = code === LIVE_MISSING ? NaN : low + scale * code;
-        }
-        return values;
+    column(codes, number, low, high) {
+        const {count} = this;
+        return Float32Array.from(codes.subarray(number * count, (number + 1) * count), (code) => decoded(code, low, high));
     }
 
     add(codes, hasHeadings) {
         const [low, high] = this.box;
-        this.records.push([0, 1].map((axis) => this.decoded(codes, axis, low[axis], high[axis])));
-        if (hasHeadings) this.records[this.records.length - 1].push(this.decoded(codes, 2, -Math.PI, Math.PI));
+        this.records.push([0, 1].map((axis) => this.column(codes, axis, low[axis], high[axis])));
+        if (hasHeadings) this.records[this.records.length - 1].push(this.column(codes, 2, -Math.PI, Math.PI));
     }
 
     x(object, index) { return this.records[index][0][object]; }
@@ -87,6 +81,7 @@ class LiveRun {
         this.dots = head.membranes ? new GrowingTrack(this.times, this.space, head.membranes.dots, head.poseBox) : null;
         this.reader = new FrameReader(head.objects.length, head.membranes ? head.membranes.dots : 0);
         this.bodyLinks = head.bodyLinks;
+        this.version = 0;
         this.light = null;
         this.robot = {object: -1, values: {}};
         this.colours = new Colours(head.palette);
@@ -123,6 +118,7 @@ class LiveRun {
         if (time === this.times[this.times.length - 1]) this.forget(this.times.length - 1);
         if (this.times.length >= this.most) this.forget(1, true);
         const count = this.head.objects.length;
+        this.version++;
         this.times.push(time);
         this.track.add(this.reader.tables[0].codes, true);
         if (this.dots) this.dots.add(this.reader.tables[2].codes, false);
@@ -134,6 +130,7 @@ class LiveRun {
     readColumn(number, table) {
         const bits = Uint32Array.from({length: this.head.objects.length}, (_, object) => this.reader.bits(table, object));
         const values = new Float32Array(bits.buffer);
+        // Numbers of columns count from 1: place 0 is the LED.
         const own = this.columns[number];
         for (const value of values) {
             if (!Number.isFinite(value)) continue;
@@ -229,7 +226,8 @@ class LivePlayer {
         this.send({do: "select", object});
     }
 
-    // Asks for the values of columns that no frame has otherwise; of the first and the second name.
+    // Asks for the values of two columns with each frame, for the colours and the heat map. What the page computes itself,
+    // such as x, is not asked for.
     showColumns(names) {
         const asked = names.map((name) => this.run.head.columnNames.includes(name) ? name : null);
         if (JSON.stringify(asked) === JSON.stringify(this.asked)) return;

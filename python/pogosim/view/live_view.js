@@ -11,15 +11,18 @@ function liveView(root, send) {
 const element = (id) => root.getElementById(id);
 const ended = new AbortController();
 let view = null, run = null, player = null, head = null, steers = true;
+let kept = {};  // how the next run starts, and its camera
+let status = null;  // the last one that came
+let timer = 0;  // hides the notice
 
 const listen = (target, type, heard) => target.addEventListener(type, heard, {signal: ended.signal});
 
 function tell(text) {
-    const told = element("told");
-    told.textContent = text;
-    told.hidden = !text;
-    clearTimeout(tell.timer);
-    tell.timer = setTimeout(() => { told.hidden = true; }, 6000);
+    const notice = element("notice");
+    notice.textContent = text;
+    notice.hidden = !text;
+    clearTimeout(timer);
+    timer = setTimeout(() => { notice.hidden = true; }, 6000);
 }
 
 const shownProblem = (text) => {
@@ -38,38 +41,34 @@ function takeBytes(data) {
     }
     const number = run.add(data);
     send({do: "shown", frame: number});
-    if (view) {
-        if (!player.follows) view.setTime(view.state.time);
-        return view.redraw();
-    }
+    if (view) return view.setTime(view.state.time);  // a paused run has a new record of that time, as after a drag
     player = new LivePlayer(run, act);
-    player.keys = {...player.keys, p: () => toggle("settings", "adjust"), m: () => toggle("said", "lines"), s: savePicture};
-    run.start = {...run.start, ...begin.kept.start};
+    player.keys = {...player.keys, p: () => toggle("settings", "adjust"), m: () => toggle("messages", "lines"), s: savePicture};
+    run.start = {...run.start, ...kept.start};
     view = swarmView(root, run, player);
-    if (begin.kept.camera) Object.assign(view.camera, begin.kept.camera);
-    if (begin.status) takeStatus(begin.status);
+    if (kept.camera) Object.assign(view.camera, kept.camera);
+    if (status) takeStatus(status);
     ready?.(view);
 }
 
 // Starts with another run, with the same camera and switches as before.
 function begin(message) {
     const isSame = head && JSON.stringify(head.objects) === JSON.stringify(message.head.objects);
-    begin.kept = {};
+    kept = {};
     if (view) {
         const {camera} = view, chosen = view.chosen();
-        begin.kept.start = {speed: player.speed,
-                            view: isSame ? chosen : {...chosen, color_by: "", heat_map: "", follow: undefined}};
-        if (isSame && !camera.fitted) begin.kept.camera = {x: camera.x, y: camera.y, scale: camera.scale, fitted: false};
+        kept.start = {speed: player.speed,
+                      view: isSame ? chosen : {...chosen, color_by: "", heat_map: "", follow: undefined}};
+        if (isSame && !camera.fitted) kept.camera = {x: camera.x, y: camera.y, scale: camera.scale, fitted: false};
         view.end();
     }
     head = message.head;
     run = new LiveRun(head);
     view = null;
 }
-begin.kept = {};
 
 function takeStatus(message) {
-    begin.status = message;
+    status = message;
     steers = message.steers;
     shownProblem(message.problem || (message.closed ? "The simulation is closed." : ""));
     element("viewers").textContent = message.viewers > 1 ? `${message.viewers} viewers` : "";
@@ -168,11 +167,11 @@ function toggle(panel, button) {
 
 function addLines(lines) {
     element("lines").hidden = false;
-    const said = element("said");
-    const isAtEnd = said.scrollTop + said.clientHeight >= said.scrollHeight - 4;
-    said.append(...lines.map((text) => Object.assign(document.createElement("div"), {textContent: text})));
-    while (said.childElementCount > MOST_LINES) said.firstElementChild.remove();
-    if (isAtEnd) said.scrollTop = said.scrollHeight;
+    const messages = element("messages");
+    const isAtEnd = messages.scrollTop + messages.clientHeight >= messages.scrollHeight - 4;
+    messages.append(...lines.map((text) => Object.assign(document.createElement("div"), {textContent: text})));
+    while (messages.childElementCount > MOST_LINES) messages.firstElementChild.remove();
+    if (isAtEnd) messages.scrollTop = messages.scrollHeight;
 }
 
 // ---- pictures
@@ -228,8 +227,8 @@ listen(element("step"), "click", () => act({do: "step", steps: 1}));
 listen(element("reset"), "click", () => act({do: "reset"}));
 listen(element("newest"), "click", () => view && player.seek(player.newest));
 listen(element("adjust"), "click", () => toggle("settings", "adjust"));
-listen(element("lines"), "click", () => toggle("said", "lines"));
-listen(element("photo"), "click", savePicture);
+listen(element("lines"), "click", () => toggle("messages", "lines"));
+listen(element("save_picture"), "click", savePicture);
 listen(element("film"), "click", toggleFilm);
 listen(element("steer"), "click", () => send({do: "steer"}));
 const follow = setInterval(() => {

@@ -15,13 +15,14 @@ const {head, space, colours} = run;
 const pen = canvas.getContext("2d");
 const count = head.objects.length;
 const categoryOf = (object) => head.categories[head.objects[object][0]];
+const scene = {run, pen, camera, poses, state, categoryOf};  // what the functions of other files draw from
 const floor = new Path2D();
 head.polygons.forEach((line) => pathOf(floor, line));
 
-const glows = new Map();
+const glows = new Cache(MAX_SPRITES);
 
 function glowOf(colour) {
-    if (!glows.has(colour)) {
+    return glows.get(colour, () => {
         const sprite = new OffscreenCanvas(64, 64);
         const ink = sprite.getContext("2d");
         const gradient = ink.createRadialGradient(32, 32, 32 / GLOW, 32, 32, 32);
@@ -30,9 +31,8 @@ function glowOf(colour) {
         gradient.addColorStop(1, colour + "00");
         ink.fillStyle = gradient;
         ink.fillRect(0, 0, 64, 64);
-        glows.set(colour, sprite.transferToImageBitmap());
-    }
-    return glows.get(colour);
+        return sprite.transferToImageBitmap();
+    });
 }
 
 // The colour of an object now. What has no LED is blue-grey, as where a column has no value.
@@ -48,10 +48,13 @@ function drawFloor() {
 
 const robots = Array.from(poses.keys()).filter((object) => !categoryOf(object).passive && !categoryOf(object).membrane);
 
+const maps = new Cache(1);
+
 // Returns what its colours mean; null: there is no heat map.
 function drawHeatMap() {
     if (!state.heat) return null;
-    const map = heatMap({space, colours, poses, column: state.heatColumn, index: state.index, robots});
+    const map = maps.get([state.time, run.version, state.heat, colours.version].join(), () =>
+        heatMap({space, colours, poses, column: state.heatColumn, index: state.index, robots}));
     pen.drawImage(map.picture, ...space.low, map.width, map.height);
     return map;
 }
@@ -89,114 +92,6 @@ function drawLamps() {
         }
         pen.stroke();
     }
-}
-
-// Each trail in a few pieces, every one in the colour of its time, fading into the past.
-function drawTrails() {
-    const start = run.track.indexAt(Math.max(state.time - state.tail, run.firstTime));
-    if (state.index <= start) return;
-    const pieces = Math.min(count > 300 ? 5 : 12, state.index - start);
-    const stride = Math.max(1, Math.round((state.index - start) / (count > 300 ? 25 : 120)));
-    pen.lineCap = pen.lineJoin = "round";
-    for (let piece = 0; piece < pieces; piece++) {
-        const from = start + Math.floor((state.index - start) * piece / pieces);
-        const to = start + Math.floor((state.index - start) * (piece + 1) / pieces);
-        const freshness = (piece + 1) / pieces;
-        const paths = new Map();  // by colour
-        for (let object = 0; object < count; object++) {
-            if (categoryOf(object).membrane) continue;
-            const colour = state.colouring.colour(object, to);
-            if (!paths.has(colour)) paths.set(colour, new Path2D());
-            const path = paths.get(colour);
-            let [x, y] = [NaN, NaN];
-            const lead = (toX, toY) => {
-                if (Math.abs(toX - x) <= space.size[0] / 2 && Math.abs(toY - y) <= space.size[1] / 2) {
-                    path.lineTo(toX, toY);
-                } else if (space.isPeriodic && x === x && toX === toX) {  // across the border: one line from either end
-                    const [dx, dy] = space.nearestImage(toX - x, toY - y);
-                    path.lineTo(x + dx, y + dy);
-                    path.moveTo(toX - dx, toY - dy);
-                    path.lineTo(toX, toY);
-                } else {
-                    path.moveTo(toX, toY);
-                }
-                [x, y] = [toX, toY];
-            };
-            for (let i = from; i < to; i += stride) lead(run.track.x(object, i), run.track.y(object, i));
-            lead(run.track.x(object, to), run.track.y(object, to));
-            if (piece === pieces - 1) lead(poses[object].x, poses[object].y);
-        }
-        pen.globalAlpha = 0.05 + 0.7 * freshness ** 2;
-        pen.lineWidth = (0.8 + freshness) / camera.scale;
-        for (const [colour, path] of paths) {
-            pen.strokeStyle = colour;
-            pen.stroke(path);
-        }
-    }
-    pen.globalAlpha = 1;
-}
-
-// Pairs of robots near enough to hear each other: max(range of a, range of b) + radius of a + radius of b.
-function linkedPairs() {
-    const talkers = [];
-    let furthest = 0;
-    for (let object = 0; object < count; object++) {
-        const own = categoryOf(object);
-        if (!own.talks || !(poses[object].x === poses[object].x)) continue;
-        talkers.push(object);
-        if (own.range > 0) furthest = Math.max(furthest, own.range);
-    }
-    if (furthest <= 0) return [];
-    const reach = furthest + 2 * Math.max(...head.categories.filter((own) => own.talks).map((own) => own.radius));
-    const cells = [0, 1].map((axis) => Math.max(1, Math.min(Math.floor(space.size[axis] / reach), 1000)));
-    const place = (value, axis) =>
-        Math.min(Math.max(Math.floor((value - space.low[axis]) / space.size[axis] * cells[axis]), 0), cells[axis] - 1);
-    const grid = new Map();
-    const pairs = [];
-    for (const object of talkers) {
-        const {x, y} = poses[object];
-        const [column, row] = [place(x, 0), place(y, 1)];
-        const seen = new Set();
-        for (let i = -1; i <= 1; i++) {
-            for (let j = -1; j <= 1; j++) {
-                let [c, r] = [column + i, row + j];
-                if (space.isPeriodic) [c, r] = [(c + cells[0]) % cells[0], (r + cells[1]) % cells[1]];
-                const key = r * 4096 + c;
-                if (seen.has(key)) continue;
-                seen.add(key);
-                for (const other of grid.get(key) || []) {
-                    const [dx, dy] = space.nearestImage(poses[other].x - x, poses[other].y - y);
-                    const [a, b] = [categoryOf(object), categoryOf(other)];
-                    const range = Math.max(a.range, b.range);
-                    if (range > 0 && Math.hypot(dx, dy) <= range + a.radius + b.radius) {
-                        pairs.push({from: other, to: object, dx: -dx, dy: -dy});
-                    }
-                }
-            }
-        }
-        const key = row * 4096 + column;
-        if (!grid.has(key)) grid.set(key, []);
-        grid.get(key).push(object);
-    }
-    return pairs;
-}
-
-function drawLinks() {
-    pen.strokeStyle = colours.link_by_all_emitters;
-    pen.globalAlpha = 0.55;
-    pen.lineWidth = 1.1 / camera.scale;
-    pen.beginPath();
-    for (const {from, to, dx, dy} of linkedPairs()) {
-        const [a, b] = [poses[from], poses[to]];
-        pen.moveTo(a.x, a.y);
-        pen.lineTo(a.x + dx, a.y + dy);
-        if (Math.abs(a.x + dx - b.x) + Math.abs(a.y + dy - b.y) > 1e-3) {
-            pen.moveTo(b.x, b.y);
-            pen.lineTo(b.x - dx, b.y - dy);
-        }
-    }
-    pen.stroke();
-    pen.globalAlpha = 1;
 }
 
 function drawGlows() {
@@ -261,17 +156,14 @@ function bodyPath(own, x, y, angle, scale = 1) {
 }
 
 // Small disks with their rims as pictures, made once for each colour and zoom; twice as fine as the screen.
-const sprites = new Map();  // by radius, then by colour
-let spriteCount = 0, spritePixel = 0, spriteVersion = 0;
+let sprites = new Cache(MAX_SPRITES), spritePixel = 0, spriteVersion = 0;
 
 function spriteOf(colour, radius, pixel) {
-    if (pixel !== spritePixel || colours.version !== spriteVersion || spriteCount >= MAX_SPRITES) {
-        sprites.clear();
-        [spriteCount, spritePixel, spriteVersion] = [0, pixel, colours.version];
+    if (pixel !== spritePixel || colours.version !== spriteVersion) {
+        sprites = new Cache(MAX_SPRITES);
+        [spritePixel, spriteVersion] = [pixel, colours.version];
     }
-    if (!sprites.has(radius)) sprites.set(radius, new Map());
-    let sprite = sprites.get(radius).get(colour);
-    if (!sprite) {
+    return sprites.get(`${colour} ${radius}`, () => {
         const half = Math.ceil(radius / pixel) + 2;
         const picture = new OffscreenCanvas(4 * half, 4 * half);
         const ink = picture.getContext("2d");
@@ -281,11 +173,8 @@ function spriteOf(colour, radius, pixel) {
         ink.strokeStyle = colours.edge;
         ink.lineWidth = 2 * 1.2 * (window.devicePixelRatio || 1);
         ink.stroke();
-        sprite = {image: picture.transferToImageBitmap(), reach: half * pixel};
-        sprites.get(radius).set(colour, sprite);
-        spriteCount++;
-    }
-    return sprite;
+        return {image: picture.transferToImageBitmap(), reach: half * pixel};
+    });
 }
 
 function drawBodies() {
@@ -320,80 +209,13 @@ function drawBodies() {
             tick.lineTo(px + 0.95 * cos, py + 0.95 * sin);
         });
     }
-    drawBodyLinks();
+    drawBodyLinks(scene);
     pen.lineCap = "butt";
     ticks.forEach((paths, category) => paths.forEach((path, bright) => {
         pen.strokeStyle = bright ? colours.edge : colours.paper;
         pen.lineWidth = Math.min(2.2 * pixel, head.categories[category].reach / 4);
         pen.stroke(path);
     }));
-}
-
-// Where links between bodies are now, as in body_links.py: those that hold, with their load from -1 to 1.
-function placedLinks() {
-    const links = run.bodyLinks, placed = [];
-    if (!links) return placed;
-    const late = state.time + 1e-9 * Math.max(1, Math.abs(state.time));
-    const place = (object, [u, v]) => {
-        if (object === -1) return [u, v];
-        const {x, y, angle} = poses[object];
-        const [cos, sin] = angle === angle ? [Math.cos(angle), Math.sin(angle)] : [1, 0];
-        return [x + u * cos - v * sin, y + u * sin + v * cos];
-    };
-    let largest = links.leastTension;
-    for (let i = 0; i < links.a.length; i++) {
-        const [a, b, breaking] = [links.a[i], links.b[i], links.breaking[i]];
-        if (links.made[i] > late || links.cut[i] <= late || a < 0 || b < -1) continue;
-        const [x, y] = place(a, links.endA[i]), [toX, toY] = place(b, links.endB[i]);
-        const [dx, dy] = space.nearestImage(toX - x, toY - y);
-        if (dx !== dx || dy !== dy) continue;
-        const stretch = Math.hypot(dx, dy) - links.rest[i];
-        const tension = links.kind[i] === "spring" ? links.stiffness[i] * stretch : 0;
-        if (breaking === null) largest = Math.max(largest, Math.abs(tension));
-        placed.push({x, y, dx, dy, kind: links.kind[i], isPinned: b === -1, tension, breaking});
-    }
-    for (const link of placed) {
-        const most = link.breaking === null ? largest : link.breaking;
-        link.load = Math.min(Math.max(link.tension / most, -1), 1);
-    }
-    return placed;
-}
-
-function tensionColour(load) {
-    const [from, to] = [colours.link_at_rest, load < 0 ? colours.link_pushed : colours.link_pulled].map(channelsOf);
-    return hexOf(mixed(from, to, Math.abs(load)));
-}
-
-function drawDot(x, y, radius, colour) {
-    pen.beginPath();
-    pen.arc(x, y, (radius + 0.6) / camera.scale, 0, 2 * Math.PI);
-    pen.fillStyle = colours.edge;
-    pen.fill();
-    pen.beginPath();
-    pen.arc(x, y, radius / camera.scale, 0, 2 * Math.PI);
-    pen.fillStyle = colour;
-    pen.fill();
-}
-
-function drawBodyLinks() {
-    pen.lineCap = "round";
-    for (const {x, y, dx, dy, kind, isPinned, load} of placedLinks()) {
-        const colour = tensionColour(load);
-        space.forEachImage(x + dx / 2, y + dy / 2, Math.hypot(dx, dy) / 2 + 4 / camera.scale, (ox, oy) => {
-            const [px, py] = [x + ox, y + oy];
-            if (kind === "hinge") return drawDot(px, py, 3.6, colour);
-            const width = kind === "rod" ? 3 : 2;
-            for (const [own, extra] of [[colours.edge, 1.2], [colour, 0]]) {
-                pen.strokeStyle = own;
-                pen.lineWidth = (width + extra) / camera.scale;
-                pen.beginPath();
-                pen.moveTo(px, py);
-                pen.lineTo(px + dx, py + dy);
-                pen.stroke();
-            }
-            if (isPinned) drawDot(px + dx, py + dy, 2.6, colour);
-        });
-    }
 }
 
 // A membrane whose dots the file does not have.
@@ -434,9 +256,8 @@ function drawScaleBar() {
 
 // Where objects would be a second later.
 function velocities() {
-    const share = run.track.shareAt(state.time, state.index);
     return Array.from(poses.keys(), (object) => {
-        const [dx, dy] = run.track.velocity(object, state.index, share);
+        const [dx, dy] = run.track.velocity(object, state.index);
         return {...poses[object], dx, dy};
     }).filter(({x, dx}, object) => x === x && dx === dx && !categoryOf(object).membrane);
 }
@@ -457,10 +278,6 @@ function drawMarks() {
 
 // Returns what the colours of the heat map mean; null: there is none.
 function draw() {
-    if (state.followed >= 0) {
-        const {x, y} = poses[state.followed];
-        if (x === x) camera.moveTo(x, y);
-    }
     const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.fillStyle = colours.paper;
@@ -474,13 +291,13 @@ function draw() {
     const heat = drawHeatMap();
     drawWalls();
     drawLamps();
-    if (state.shows.trails) drawTrails();
-    if (state.shows.links === "below") drawLinks();
+    if (state.shows.trails) drawTrails(scene);
+    if (state.shows.links === "below") drawLinks(scene);
     drawGlows();
     if (!space.isPeriodic) pen.restore();
     drawMembranes();
     drawBodies();
-    if (state.shows.links === "above") drawLinks();
+    if (state.shows.links === "above") drawLinks(scene);
     if (space.isPeriodic) {
         drawSelection();
         pen.restore();
@@ -496,5 +313,9 @@ function draw() {
     return heat;
 }
 
-return {draw, colourOf, categoryOf, linkedPairs, placedLinks, velocities, labels};
+return {
+    draw, colourOf, categoryOf, velocities, labels,
+    linkedPairs: () => linkedPairs(scene),
+    placedLinks: () => placedLinks(scene),
+};
 }

@@ -3,9 +3,9 @@
 const SLACK = {mouse: 3, pen: 3, touch: 14};  // pixels beside an object that still hit it
 const CLICK_PX = 4;  // a pointer that has moved less has clicked
 
-// camera: moved and zoomed. view: isActive(), whether the wheel zooms; objectAt(x, y, slack), -1: none; select(object);
+// camera: moved and zoomed. target: isActive(), whether the wheel zooms; objectAt(x, y, slack), -1: none; select(object);
 // hover(object); drag(object, x, y), mm, or undefined if objects cannot be moved; release(), before the picture moves; redraw().
-function listenToPointers(canvas, camera, listen, view) {
+function listenToPointers(canvas, camera, listen, target) {
     const down = new Map();  // where the pointers are that are down, by their ids
     let drag = null;
     const place = (event) => [event.offsetX, event.offsetY];
@@ -18,10 +18,10 @@ function listenToPointers(canvas, camera, listen, view) {
                                               camera.y - (to[1] - from[1]) / camera.scale);
 
     listen(canvas, "wheel", (event) => {
-        if (!view.isActive()) return;
+        if (!target.isActive()) return;
         event.preventDefault();
         camera.zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.0015)), ...place(event));
-        view.redraw();
+        target.redraw();
     }, {passive: false});
 
     listen(canvas, "pointerdown", (event) => {
@@ -29,23 +29,23 @@ function listenToPointers(canvas, camera, listen, view) {
         down.set(event.pointerId, at);
         canvas.setPointerCapture(event.pointerId);
         const slack = SLACK[event.pointerType] ?? SLACK.mouse;
-        const isMovable = view.drag && event.pointerType !== "touch";
-        drag = {at, slack, object: isMovable ? view.objectAt(...at, slack) : -1, moved: down.size > 1};
+        const isMovable = target.drag && event.pointerType !== "touch";
+        drag = {at, slack, object: isMovable ? target.objectAt(...at, slack) : -1, moved: down.size > 1};
     });
 
     listen(canvas, "pointermove", (event) => {
         const at = place(event), before = down.get(event.pointerId);
         if (!before) {
             if (event.pointerType === "touch") return;
-            const object = view.objectAt(...at, SLACK.mouse);
-            view.hover(object);
+            const object = target.objectAt(...at, SLACK.mouse);
+            target.hover(object);
             canvas.style.cursor = object < 0 ? "default" : "pointer";
             return;
         }
         if (down.size > 1) {  // two fingers hold the picture
             const [from, width] = [middle(), spread()];
             down.set(event.pointerId, at);
-            view.release();
+            target.release();
             shift(from, middle());
             camera.zoom(spread() / width, ...middle());
         } else {
@@ -53,13 +53,13 @@ function listenToPointers(canvas, camera, listen, view) {
             if (!drag.moved) return;
             down.set(event.pointerId, at);
             if (drag.object >= 0) {
-                view.drag(drag.object, ...camera.toArena(...at));
+                target.drag(drag.object, ...camera.toArena(...at));
             } else {
-                view.release();
+                target.release();
                 shift(before, at);
             }
         }
-        view.redraw();
+        target.redraw();
     });
 
     const end = (event) => {
@@ -67,9 +67,9 @@ function listenToPointers(canvas, camera, listen, view) {
         if (!down.size) drag = null;
     };
     listen(canvas, "pointerup", (event) => {
-        if (drag && !drag.moved) view.select(view.objectAt(...place(event), drag.slack));
+        if (drag && !drag.moved) target.select(target.objectAt(...place(event), drag.slack));
         end(event);
     });
     listen(canvas, "pointercancel", end);
-    listen(canvas, "pointerleave", () => view.hover(-1));
+    listen(canvas, "pointerleave", () => target.hover(-1));
 }

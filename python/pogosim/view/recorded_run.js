@@ -1,8 +1,5 @@
 // A run that is over: the tables of a page, and the player that shows them again.
 
-const MISSING = 65535;
-const LEVELS = 65534;
-
 // Undoes what packing.py does: text to tables of 16-bit codes, object by object.
 async function readTables(packed, shapes) {
     const text = atob(packed);
@@ -47,8 +44,7 @@ class RecordedTrack extends Track {
         super(times, space);
         this.values = ["x", "y", "angle"].map((name) => {
             const {table, low, high} = poses[name];
-            const span = high > low ? high - low : 1;
-            return Float32Array.from(tables[table], (code) => code === MISSING ? NaN : low + span * code / LEVELS);
+            return Float32Array.from(tables[table], (code) => decoded(code, low, high));
         });
     }
 
@@ -62,6 +58,7 @@ class RecordedColumn {
     constructor(head, shown, codes, own) {
         Object.assign(this, own);
         Object.assign(this, {head, shown, codes, isListed: !own.base || own.led});
+        if (own.values?.length === 0) [this.from, this.to] = [Infinity, -Infinity];
         this.lights = own.led ? own.labels.map((label) => parseInt(label.slice(1), 16)) : null;
     }
 
@@ -73,7 +70,7 @@ class RecordedColumn {
         const code = this.code(object, index);
         if (code === MISSING) return null;
         if (this.labels) return this.labels[code];
-        return this.values ? this.values[code] : this.low + (this.high - this.low) * code / LEVELS;
+        return this.values ? this.values[code] : decoded(code, this.low, this.high);
     }
 
     colour(object, index) {
@@ -95,6 +92,7 @@ class RecordedRun {
         this.track = new RecordedTrack(tables, head.poses, this.times, this.space);
         this.dots = head.membranes
             ? new RecordedTrack(tables, head.membranes.poses, Float64Array.from(head.membranes.times), this.space) : null;
+        this.version = 0;
         this.bodyLinks = head.bodyLinks;
         this.colours = new Colours(head.palette);
         this.lights = head.lights.map(([from, table]) => ({from, light: new Light(head.lightCells, tables[table])}));

@@ -6,8 +6,8 @@ const TAIL_S = 5;
 //
 // root: the document, or a shadow root, that has these elements.
 // run: what is shown, a RecordedRun or a LiveRun: head, space, colours, times, track, dots, columns, bodyLinks,
-//     lightAt(index), wallColour(wall, index); start: how it begins: speed, tail_s, and view, the section of that name of a
-//     configuration; moreValues(object).
+//     lightAt(index), wallColour(wall, index); version, which grows with each record that comes; moreValues(object);
+//     start: how it begins: speed, tail_s, and view, the section of that name of a configuration.
 // player: what moves time: isPlaying, toggle(), step(records), setSpeed(speed), speeds, seek(time), tick(now);
 //     optional: drag(object, x, y), select(object), showColumns(names), keys.
 function swarmView(root, run, player) {
@@ -17,14 +17,16 @@ const element = (id) => root.getElementById(id);
 const canvas = element("arena");
 const poses = Array.from({length: count}, () => ({x: NaN, y: NaN, angle: NaN}));
 const state = {
-    time: run.times[0], index: 0, selected: -1, hovered: -1, followed: -1, tail: run.start.tail_s ?? TAIL_S, frames: 0, ratio: 0,
+    time: run.times[0], index: 0, selected: -1, hovered: -1, followed: -1, tail_s: run.start.tail_s ?? TAIL_S,
+    frames: 0, ratio: 0,
     shows: {},  // what is switched on, by the names of the switches
     colouring: run.columns[0], heat: "", heatColumn: null,
 };
 const camera = new Camera(canvas, run.space);
 const painter = makePainter({run, canvas, camera, poses, state});
 const {categoryOf, colourOf} = painter;
-const switches = new Switches(root, state.shows, (name) => {
+const ended = new AbortController();  // of all that listens
+const switches = new Switches(root, state.shows, listen, (name) => {
     if (name === "theme" || name === "palette") {
         run.colours.choose(state.shows.theme, state.shows.palette);
         showKey();
@@ -32,7 +34,6 @@ const switches = new Switches(root, state.shows, (name) => {
     element("clock").hidden = !state.shows.time;
     dirty = true;
 });
-const ended = new AbortController();  // of all that listens
 let dirty = true, heatKey = null;
 
 function redraw() {
@@ -122,6 +123,10 @@ function objectAt(px, py, slack) {
 }
 
 function draw() {
+    if (state.followed >= 0) {
+        const {x, y} = poses[state.followed];
+        if (x === x) camera.moveTo(x, y);
+    }
     const heat = painter.draw();
     if (heat?.to !== heatKey?.to || heat?.from !== heatKey?.from || heat?.name !== heatKey?.name) {
         heatKey = heat;
@@ -197,6 +202,9 @@ function heading(text) {
     return own;
 }
 
+const UNITS = new Map([["speed", "mm/s"], ["x", "mm"], ["y", "mm"], ["angle", "rad"]]);  // as in src/sim/robot_values.cpp
+const titleOf = (name) => UNITS.has(name) ? `${name} (${UNITS.get(name)})` : name;
+
 // What the colours mean: a bar for numbers, a list for names, nothing for LEDs.
 function showKey() {
     const key = element("key");
@@ -204,14 +212,11 @@ function showKey() {
     key.hidden = !isOfRobots && !heat;
     key.replaceChildren();
     if (isOfRobots) showColouring(key);
-    if (heat) key.append(heading(heat.name), ...barOf(heat));
+    if (heat) key.append(heading(titleOf(heat.name)), ...barOf(heat));
 }
 
-const UNITS = {speed: "mm/s", angle: "rad"};
-
 function showColouring(key) {
-    const {name} = state.colouring;
-    key.append(heading(UNITS[name] ? `${name} (${UNITS[name]})` : name));
+    key.append(heading(titleOf(state.colouring.name)));
     if (state.colouring.labels && !state.colouring.base) {
         state.colouring.labels.slice(0, 40).forEach((label, i) => key.append(entry(label, state.colouring.colours[i])));
         if (state.colouring.labels.length > 40) key.append(`and ${state.colouring.labels.length - 40} more`);
@@ -226,17 +231,19 @@ function showColouring(key) {
     }
 }
 
-function barOf({from, to, shades}) {
+// What stands below both ends of a bar of colours, as in src/render/key_layer.cpp.
+function endsOf({from, to, shades}) {
+    if (shades === "angle") return ["-pi", "pi"];
+    return from <= to ? [from, to].map((value) => String(Number(value.toPrecision(4)))) : ["no values", ""];
+}
+
+function barOf(scale) {
     const bar = document.createElement("div");
     bar.className = "bar";
-    bar.style.background = `linear-gradient(to right, ${run.colours.shades[shades].filter((_, i) => i % 15 === 0).join(", ")})`;
+    bar.style.background = `linear-gradient(to right, ${run.colours.shades[scale.shades].filter((_, i) => i % 15 === 0).join(", ")})`;
     const ends = document.createElement("div");
     ends.className = "ends";
-    ends.append(...[from, to].map((value) => {
-        const end = document.createElement("span");
-        end.textContent = String(Number(value.toPrecision(4)));
-        return end;
-    }));
+    ends.append(...endsOf(scale).map((text) => Object.assign(document.createElement("span"), {textContent: text})));
     return [bar, ends];
 }
 
@@ -251,10 +258,10 @@ function entry(label, colour) {
 
 // ---- controls
 
-function toggleLooks() {
-    const looks = element("looks");
-    looks.hidden = !looks.hidden;
-    element("look").setAttribute("aria-expanded", String(!looks.hidden));
+function toggleViewPanel() {
+    const panel = element("view_panel");
+    panel.hidden = !panel.hidden;
+    element("view_button").setAttribute("aria-expanded", String(!panel.hidden));
 }
 
 function toggleHelp(show = element("help").hidden) {
@@ -271,10 +278,10 @@ const KEYS = {
     "=": () => setSpeed(nextSpeed(1)),
     "-": () => setSpeed(nextSpeed(-1)),
     ...switches.keys(),
-    d: () => heatBy(state.heat === DENSITY ? "" : DENSITY),
+    d: () => heatBy(state.heat ? "" : DENSITY),
     f: () => followSelected(state.followed < 0),
     0: fit,
-    F9: () => toggleLooks(),
+    F9: () => toggleViewPanel(),
     "?": () => toggleHelp(),
     Escape: () => { toggleHelp(false); select(-1); follow(-1); },
     ...player.keys,
@@ -315,9 +322,9 @@ function listenToControls() {
     listen(element("colour"), "change", (event) => colourBy(event.target.value));
     listen(element("heat"), "change", (event) => heatBy(event.target.value));
     listen(element("follow"), "change", (event) => followSelected(event.target.checked));
-    listen(element("look"), "click", toggleLooks);
+    listen(element("view_button"), "click", toggleViewPanel);
     listen(element("fit"), "click", fit);
-    listen(element("ask"), "click", () => toggleHelp());
+    listen(element("help_button"), "click", () => toggleHelp());
     const resized = new ResizeObserver(resize);
     resized.observe(canvas);
     ended.signal.addEventListener("abort", () => resized.disconnect());
@@ -343,12 +350,12 @@ function fillColours() {
 }
 
 // Shows what a configuration says.
-function begin(view) {
-    switches.begin(view);
-    colourBy((run.columns.find((column) => column.name === view.color_by) ?? run.columns[0]).name);
-    heatBy(view.heat_map ?? "");
-    camera.fit(view.zoom ?? 1);
-    follow(head.objects.findIndex(([category, id]) => id === view.follow && !head.categories[category].passive));
+function begin(viewOptions) {
+    switches.begin(viewOptions);
+    colourBy((run.columns.find((column) => column.name === viewOptions.color_by) ?? run.columns[0]).name);
+    heatBy(viewOptions.heat_map ?? "");
+    camera.fit(viewOptions.zoom ?? 1);
+    follow(head.objects.findIndex(([category, id]) => id === viewOptions.follow && !head.categories[category].passive));
 }
 
 // Returns what is shown, as a configuration says it.

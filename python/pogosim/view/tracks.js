@@ -1,5 +1,11 @@
 // Where objects are at any time, between the times of a record. See Timeline.at() in timeline.py.
 
+const MISSING = 65535;  // the code of what has no value
+const LEVELS = 65534;  // the highest other code
+
+// The number that a code of 16 bits stands for, see packing.py; NaN: there is none.
+const decoded = (code, low, high) => code === MISSING ? NaN : low + (high - low) * code / LEVELS;
+
 class Track {
     // times: ascending, s. Classes that extend this one know x(object, index), y and angle.
     constructor(times, space) {
@@ -24,6 +30,16 @@ class Track {
         return Math.min(Math.max((time - start) / (this.times[index + 1] - start), 0), 1);
     }
 
+    // How far an object moves from a record to the next one, mm, the shortest way. In an arena with walls, no robot moves half
+    // the arena: one that has jumped stays where it was until it is elsewhere. As between() in timeline.py.
+    step(object, from) {
+        const {space} = this;
+        const [dx, dy] = space.nearestImage(this.x(object, from + 1) - this.x(object, from),
+                                            this.y(object, from + 1) - this.y(object, from));
+        const isJump = Math.abs(dx) > space.size[0] / 2 || Math.abs(dy) > space.size[1] / 2;
+        return isJump && !space.isPeriodic ? [0, 0] : [dx, dy];
+    }
+
     // Pose of an object, on the straight and shortest way between two times.
     at(object, index, share, pose) {
         const {space} = this;
@@ -31,8 +47,7 @@ class Track {
         pose.y = this.y(object, index);
         pose.angle = this.angle(object, index);
         if (share <= 0 || index + 1 >= this.times.length) return pose;
-        let [dx, dy] = space.nearestImage(this.x(object, index + 1) - pose.x, this.y(object, index + 1) - pose.y);
-        if (!space.isPeriodic && (Math.abs(dx) > space.size[0] / 2 || Math.abs(dy) > space.size[1] / 2)) dx = dy = 0;
+        const [dx, dy] = this.step(object, index);
         pose.x += share * dx;
         pose.y += share * dy;
         if (space.isPeriodic) {
@@ -44,14 +59,12 @@ class Track {
         return pose;
     }
 
-    // How far an object comes in a second, mm, as it moves between the two times around one, or up to a time of the record.
-    velocity(object, index, share) {
-        const from = share > 0 ? index : index - 1;
-        if (from < 0 || from + 1 >= this.times.length) return [0, 0];
-        const [dx, dy] = this.space.nearestImage(this.x(object, from + 1) - this.x(object, from),
-                                                 this.y(object, from + 1) - this.y(object, from));
-        const seconds = this.times[from + 1] - this.times[from];
-        return [dx / seconds, dy / seconds];
+    // Velocity of an object at a record, mm/s: how it has moved since the record before; at the first one, how it moves until
+    // the next; 0 if there is only one. As Timeline.velocities_at() in timeline.py.
+    velocity(object, index) {
+        if (this.times.length < 2) return [0, 0];
+        const to = Math.max(index, 1), seconds = this.times[to] - this.times[to - 1];
+        return this.step(object, to - 1).map((way) => way / seconds);
     }
 }
 
