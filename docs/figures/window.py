@@ -166,6 +166,6 @@ def caption(second: int, counts: list[int]) -> Quote:
     """Say what the picture shows."""
     shares = f"{', '.join(map(str, counts[:-1]))} and {counts[-1]}"
     return paragraph(
-        f"*The demonstration after {second} s, with trails (F2) and links between robots that hear each other (F5). New "
-        f"colours have spread to {shares} robots. Robot {ROBOT} is selected.*"
+        f"*The demonstration after {second} s, with trails (F2) and links between robots that hear each other (F5). "
+        f"New colours have spread to {shares} robots. Robot {ROBOT} is selected.*"
     )

@@ -379,9 +379,11 @@ def test_page_of_the_window_lists_the_keys_that_the_window_helps_with() -> None:
     page = (ROOT / "docs" / "window.md").read_text()
     section = page[page.index("## Keys and mouse") : page.index("## Speed")]
     listed = re.findall(r"^\| (.*?) \|", section, re.MULTILINE)[1:]
-    help_lines = re.findall(r'Help\{"(.*?)", ', (ROOT / "src" / "view" / "actions.cpp").read_text())
-    assert len(help_lines) > 10
-    assert listed == help_lines
+    of_run, of_view = (ROOT / "src" / "view" / "actions.cpp").read_text().split("kHelpOfTheView{")
+    switches = re.findall(r'\.key_name = "(.*?)"', (ROOT / "src" / "view" / "switches.cpp").read_text())
+    before, behind = (re.findall(r'Help\{"(.*?)", ', part) for part in (of_run, of_view))
+    assert min(map(len, (before, switches, behind))) > 5
+    assert listed == [*before, *switches, *behind]
 
 
 def test_callback_of_the_page_of_the_window_works_in_the_program_of_the_readme(tmp_path: Path) -> None:

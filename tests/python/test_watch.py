@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import http.client
 import json
 import os
@@ -389,6 +390,10 @@ def test_reset_that_fails_is_said_at_the_end(served: Served) -> None:
     assert "data.feather" in said.splitlines()[-1]
 
 
+def shows(viewer: Viewer, time_s: float) -> bool:
+    return abs(viewer.last.time_s - time_s) < 1e-6
+
+
 def rows_until(file: Path) -> float:
     return float(pd.read_feather(file)["time"].max())
 
@@ -400,7 +405,7 @@ def test_files_of_earlier_runs_are_kept(hosted: Path, scene: Path, tmp_path: Pat
         with serving(tmp_path, *arguments) as served:
             viewer = served.view()
             viewer.do("step", steps=steps)
-            wait_for(lambda viewer=viewer, steps=steps: viewer.last.time_s == pytest.approx(0.01 * steps))
+            wait_for(functools.partial(shows, viewer, 0.01 * steps))
             served.end()
     assert rows_until(file) == pytest.approx(2.0)
     assert rows_until(tmp_path / "data.1.feather") == pytest.approx(1.0)
