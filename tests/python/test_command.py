@@ -215,10 +215,13 @@ def test_run_warns_of_shared_variables_and_gives_the_exit_code(tmp_path: Path) -
         (["nothing"], "there is no project, source file or program nothing"),
         (["folder"], "folder is not a project: it has no Makefile (pogosim new NAME makes a project)"),
         (["text"], "text is neither a folder, a .c or .cpp file, a firmware, nor a program"),
+        (["alone.so"], "alone.so is a shared object, for Python and `pogosim watch`, and no program (make sim)"),
+        (["both.so"], "both.so is a shared object, for Python and `pogosim watch`; run both"),
     ],
 )
 def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_path: Path) -> None:
-    (tmp_path / "text").write_text("some text")
+    for name in ("text", "alone.so", "both.so", "both"):
+        (tmp_path / name).write_text("some text")
     (tmp_path / "folder").mkdir()
     assert refusal(command(tmp_path, "run", *arguments)) == f"pogosim run: {said}"
 

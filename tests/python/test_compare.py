@@ -429,7 +429,7 @@ def test_runs_of_other_lengths_are_told(tmp_path: Path) -> None:
     write(tmp_path / "a.feather", walkers(3, 5))
     write(tmp_path / "b.feather", walkers(3, 9))
     both = compared(tmp_path, "a.feather", "b.feather", "--category", "robots").output
-    assert "Runs of a end at 2 s, those of b at 4 s (medians): means and ends are not of the same time." in both
+    assert "Runs of a end at 2 s, those of b at 4 s: means and ends are not of the same time." in both
     assert "Runs of a" not in compared(tmp_path, "a.feather", "a.feather", "--category", "robots").output
 
 

@@ -180,6 +180,8 @@ def test_click_shows_the_values_of_a_robot(shown: Shown) -> None:
 
 
 def test_robot_is_dragged(shown: Shown) -> None:
+    shown.simulation.step(10)
+    shown.wait(f"live.view.state.time === {shown.simulation.time}")
     before = shown.simulation.positions[0].copy()
     x, y = shown.screen(0)
     to = shown.value("live.view.camera.toScreen(560, 500)")
@@ -191,6 +193,8 @@ def test_robot_is_dragged(shown: Shown) -> None:
     wait_for(lambda: np.allclose(shown.simulation.positions[0], (560.0, 500.0), atol=3.0))
     assert not np.allclose(before, shown.simulation.positions[0], atol=3.0)
     shown.wait("Math.hypot(live.view.poses[0].x - 560, live.view.poses[0].y - 500) < 3")  # the run is paused
+    velocity = shown.value("live.run.track.velocity(0, live.run.times.length - 1)")
+    assert np.hypot(*velocity) < 200.0  # a hand is no motion of its own
     camera = shown.value("[live.view.camera.x, live.view.camera.y]")
     shown.page.mouse.move(30, 300)  # beside the arena: this moves the picture
     shown.page.mouse.down()

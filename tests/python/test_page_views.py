@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from chromium import CHROMIUM
+from live_client import wait_for
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from pogosim.film.command import main
@@ -362,3 +363,19 @@ def test_help_names_every_key(replay: Replay) -> None:
     told = replay.page.inner_text("#help")
     for key in ("F2", "C", "F7", "F8", "L", "V", "D", "T", "F9"):
         assert f"\n{key}\n" in told or f"\n{key}\t" in told, key
+
+
+def test_page_in_a_part_that_is_shown_later_has_its_size(browser: Browser, tmp_path: Path) -> None:
+    data = write(tmp_path / "a.feather", walkers(), OBJECTS, view={"follow": 1})
+    assert main([str(data), "-o", str(tmp_path / "run.html"), "-q"]) == 0
+    (tmp_path / "around.html").write_text(
+        '<iframe src="run.html" width="800" height="600" style="display: none"></iframe>', encoding="utf-8"
+    )
+    page = browser.new_page()
+    page.goto((tmp_path / "around.html").as_uri())
+    inner = page.frames[1]
+    inner.evaluate("replay.ready")
+    page.evaluate("document.querySelector('iframe').style.display = 'block'")
+    wait_for(lambda: inner.evaluate("replay.screen(2)[0] - replay.screen(0)[0]") > 100)  # of a frame of 800 pixels
+    wait_for(lambda: abs(inner.evaluate("replay.screen(1)[0]") - 400) < 5)
+    page.close()

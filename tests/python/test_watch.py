@@ -433,6 +433,7 @@ def test_file_that_the_run_does_not_write_has_its_name(hosted: Path, scene: Path
         viewer.do("reset")
         viewer.do("step", steps=1)
         wait_for(lambda: viewer.last.time_s > 0)
+        assert "is complete" not in served.end()
     assert file.read_bytes() == b"of something else"
 
 

@@ -141,7 +141,8 @@ def program_of(what: Path, pogosim: Installation) -> Path:
     if what.suffix in COMPILERS:
         return compile_file(what, pogosim)
     if what.suffix == ".so":
-        raise RunError(f"{what} is a shared object, for Python and `pogosim watch`; run {what.with_suffix('')}")
+        beside = f"; run {what.with_suffix('')}" if what.with_suffix("").is_file() else ", and no program (make sim)"
+        raise RunError(f"{what} is a shared object, for Python and `pogosim watch`{beside}")
     if not os.access(what, os.X_OK):
         raise RunError(f"{what} is neither a folder, a .c or .cpp file, a firmware, nor a program")
     return what

@@ -253,7 +253,7 @@ def watch(options: argparse.Namespace, prog: str) -> int:
                     live.end()
                     is_open = simulation._current.run is not None
                     closed(simulation)
-        return ended(simulation, live, prog, is_open)
+        return ended(simulation, live, prog, is_open and is_written)
     finally:
         signals.restore()
 
@@ -270,12 +270,12 @@ def closed(simulation: Simulation) -> None:
         raise WatchError(str(error)) from None
 
 
-def ended(simulation: Simulation, live: LiveRun, prog: str, is_open: bool) -> int:
-    """Say how it has ended; `is_open`: no reset has failed. Returns the exit code."""
+def ended(simulation: Simulation, live: LiveRun, prog: str, has_file: bool) -> int:
+    """Say how it has ended; `has_file`: it has written a data file, and no reset has failed. Returns the exit code."""
     from pogosim.watch.terminal import print_out
 
     is_whole = live.failure is None or isinstance(live.failure, ProgramFailedError)
-    if is_open and is_whole and simulation.data_file.is_file():
+    if has_file and is_whole and simulation.data_file.is_file():
         print_out(f"{simulation.data_file} is complete.")
     if live.failure is None:
         return 0

@@ -137,9 +137,10 @@ def notes_on_durations(a: Numbers, b: Numbers) -> list[str]:
     ends_s = [statistics.median(own.ends_s) for own in (a, b)]
     if math.isclose(*ends_s, rel_tol=0.01):
         return []
+    each = " (medians)" if len(a.ends_s) > 1 else ""
     return [
-        f"Runs of a end at {ends_s[0]:.6g} s, those of b at {ends_s[1]:.6g} s (medians): means and ends are not of "
-        "the same time."
+        f"Runs of a end at {ends_s[0]:.6g} s, those of b at {ends_s[1]:.6g} s{each}: means and ends are not of the "
+        "same time."
     ]
 
 

@@ -51,6 +51,7 @@ class GrowingTrack extends Track {
     constructor(times, space, count, box) {
         super(times, space);
         Object.assign(this, {count, box, records: []});
+        this.arrivals = new WeakMap();  // of records of which another one of the same time came before: that one
     }
 
     column(codes, number, low, high) {
@@ -67,6 +68,16 @@ class GrowingTrack extends Track {
     x(object, index) { return this.records[index][0][object]; }
     y(object, index) { return this.records[index][1][object]; }
     angle(object, index) { return this.records[index][2] ? this.records[index][2][object] : NaN; }
+
+    arrival(object, index) {
+        const [x, y] = this.arrivals.get(this.records[index]) ?? this.records[index];
+        return [x[object], y[object]];
+    }
+
+    // The last record takes the place of another one of the same time.
+    replace(other) {
+        this.arrivals.set(this.records[this.records.length - 1], this.arrivals.get(other) ?? other);
+    }
 }
 
 class LiveRun {
@@ -115,12 +126,14 @@ class LiveRun {
     add(data) {
         const {number, time, columns} = this.reader.read(data);
         if (time < this.times[this.times.length - 1]) this.forget(0);  // the run went back to a state
-        if (time === this.times[this.times.length - 1]) this.forget(this.times.length - 1);
+        const last = this.times.length - 1, other = time === this.times[last] ? this.track.records[last] : null;
+        if (other) this.forget(last);
         if (this.times.length >= this.most) this.forget(1, true);
         const count = this.head.objects.length;
         this.version++;
         this.times.push(time);
         this.track.add(this.reader.tables[0].codes, true);
+        if (other) this.track.replace(other);
         if (this.dots) this.dots.add(this.reader.tables[2].codes, false);
         this.leds.push(Uint32Array.from({length: count}, (_, object) => this.reader.bits(1, object)));
         this.values.push(new Map(columns.flatMap((own, i) => own ? [[own, this.readColumn(own, COLUMN + i)]] : [])));

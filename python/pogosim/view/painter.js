@@ -3,6 +3,7 @@
 const GLOW = 1.75;  // radius of a glow, in radii of its robot
 const MAX_SPRITE = 48;  // pixels of a radius
 const MAX_SPRITES = 2000;
+const PLATE = 0.8;  // opacity of the paper below letters, which may lie on the floor
 
 function pathOf(path, line) {
     line.forEach(([x, y], i) => i ? path.lineTo(x, y) : path.moveTo(x, y));
@@ -247,11 +248,15 @@ function drawScaleBar() {
     const most = Math.min(canvas.clientWidth / 4, 180) / camera.scale;
     const power = 10 ** Math.floor(Math.log10(most));
     const length = power * [5, 2, 1].find((step) => step * power <= most);
-    const y = canvas.clientHeight - 22;
+    const y = canvas.clientHeight - 22, text = `${Number(length.toPrecision(3))} mm`;
+    pen.font = `12px ${FONT}`;
+    pen.globalAlpha = PLATE;
+    pen.fillStyle = colours.paper;
+    pen.fillRect(10, y - 6, Math.max(length * camera.scale, pen.measureText(text).width) + 12, 28);
+    pen.globalAlpha = 1;
     pen.fillStyle = colours.ink;
     pen.fillRect(16, y, length * camera.scale, 2.5);
-    pen.font = `12px ${FONT}`;
-    pen.fillText(`${Number(length.toPrecision(3))} mm`, 16, y + 16);
+    pen.fillText(text, 16, y + 16);
 }
 
 // Where objects would be a second later.

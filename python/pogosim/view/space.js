@@ -58,6 +58,7 @@ class Camera {
         this.x = (low[0] + high[0]) / 2;
         this.y = (low[1] + high[1]) / 2;
         [this.fitted, this.zoomAtFit] = [true, zoom];
+        this.hasSize = width > 0 && height > 0;  // in a part of a page that is not shown yet there is nothing to fit into
     }
 
     zoom(factor, px, py) {

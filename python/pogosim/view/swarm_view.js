@@ -105,7 +105,7 @@ function resize() {
     state.ratio = window.devicePixelRatio || 1;
     canvas.width = Math.max(Math.round(canvas.clientWidth * state.ratio), 1);
     canvas.height = Math.max(Math.round(canvas.clientHeight * state.ratio), 1);
-    if (camera.fitted) camera.fit(camera.zoomAtFit);
+    if (camera.fitted || !camera.hasSize) camera.fit(camera.zoomAtFit);
     dirty = true;
 }
 

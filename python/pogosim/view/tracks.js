@@ -32,13 +32,17 @@ class Track {
 
     // How far an object moves from a record to the next one, mm, the shortest way. In an arena with walls, no robot moves half
     // the arena: one that has jumped stays where it was until it is elsewhere. As between() in timeline.py.
-    step(object, from) {
+    step(object, from, [x, y] = this.place(object, from + 1)) {
         const {space} = this;
-        const [dx, dy] = space.nearestImage(this.x(object, from + 1) - this.x(object, from),
-                                            this.y(object, from + 1) - this.y(object, from));
+        const [dx, dy] = space.nearestImage(x - this.x(object, from), y - this.y(object, from));
         const isJump = Math.abs(dx) > space.size[0] / 2 || Math.abs(dy) > space.size[1] / 2;
         return isJump && !space.isPeriodic ? [0, 0] : [dx, dy];
     }
+
+    place(object, index) { return [this.x(object, index), this.y(object, index)]; }
+
+    // Where an object was by its own motion: a hand may have put it elsewhere since.
+    arrival(object, index) { return this.place(object, index); }
 
     // Pose of an object, on the straight and shortest way between two times.
     at(object, index, share, pose) {
@@ -64,7 +68,7 @@ class Track {
     velocity(object, index) {
         if (this.times.length < 2) return [0, 0];
         const to = Math.max(index, 1), seconds = this.times[to] - this.times[to - 1];
-        return this.step(object, to - 1).map((way) => way / seconds);
+        return this.step(object, to - 1, this.arrival(object, to)).map((way) => way / seconds);
     }
 }
 

@@ -16,6 +16,7 @@ from pogosim.pages import data_uri
 from pogosim.simulation import Simulation, SimulationError
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import given
+from pogosim.simulation.run import CLOSED
 from pogosim.view import assets
 from pogosim.watch.commands import RefusedError, read_command
 from pogosim.watch.page import LIVE_PROGRAM, live_elements
@@ -72,10 +73,13 @@ class RunView(anywidget.AnyWidget):
 
         Raises:
             ConfigurationError: It is no speed.
+            SimulationError: The simulation is closed.
         """
         wanted = None if speed is None else given.number("speed", speed, "a number above 0")
         if wanted is not None and not wanted > 0.0:
             raise given.refused("speed", "a number above 0", speed)
+        if self.simulation._is_closed:
+            raise SimulationError(CLOSED)
         self._live.play(wanted)
 
     def pause(self) -> None:
