@@ -6,6 +6,7 @@ import io
 import re
 import subprocess
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from chromium import CHROMIUM
+from live_client import wait_for
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from pogosim.film.command import main
@@ -31,7 +33,7 @@ def page_of(data: Path, *options: str) -> Path:
 
 def show(browser: Browser, page: Path) -> Page:
     """Open a page from its file; every message of the browser is an error of the test."""
-    opened = browser.new_page(viewport={"width": 900, "height": 700}, bypass_csp=True)  # its waiting needs eval()
+    opened = browser.new_page(viewport={"width": 900, "height": 700})
     opened.set_default_timeout(20_000)
     said: list[str] = []
     opened.on("console", lambda message: said.append(message.text))
@@ -39,7 +41,7 @@ def show(browser: Browser, page: Path) -> Page:
     opened.on("request", lambda request: said.append(request.url) if request.url.startswith("http") else None)
     opened.goto(page.as_uri())
     opened.evaluate("replay.ready")
-    opened.wait_for_function("replay.frames > 0")
+    wait_for(partial(opened.evaluate, "replay.frames > 0"))
     opened.said = said  # type: ignore[attr-defined]
     return opened
 
@@ -102,7 +104,7 @@ def test_page_without_javascript_shows_the_same_first_picture(browser: Browser, 
         opened = browser.new_page(viewport={"width": 900, "height": 700}, java_script_enabled=has_javascript)
         opened.goto(page.as_uri())
         if has_javascript:
-            opened.wait_for_function("replay.frames > 0")
+            wait_for(partial(opened.evaluate, "replay.frames > 0"))
             drawn(opened)
         else:
             assert "first picture" in opened.inner_text("noscript p")
@@ -137,14 +139,14 @@ def test_scrubbing_shows_the_time_that_it_says(page: Page) -> None:
 def test_playing_goes_on_to_the_end_and_stops(page: Page) -> None:
     page.select_option("#speed", "0.1")  # 20 s, so that a slow machine sees it playing
     page.keyboard.press("Space")
-    page.wait_for_function("replay.time > 0")
+    wait_for(partial(page.evaluate, "replay.time > 0"))
     assert page.get_attribute("#play", "aria-label") == "Pause"
     page.select_option("#speed", "8")
-    page.wait_for_function("replay.time === 2 && !replay.playing")
+    wait_for(partial(page.evaluate, "replay.time === 2 && !replay.playing"))
     assert page.get_attribute("#play", "aria-label") == "Play"
     page.select_option("#speed", "0.1")
     page.click("#play")  # from the start again
-    page.wait_for_function("replay.playing && replay.time < 2")
+    wait_for(partial(page.evaluate, "replay.playing && replay.time < 2"))
     page.keyboard.press("Space")
     assert page.evaluate("replay.playing") is False
 
@@ -219,7 +221,7 @@ def test_wheel_zooms_where_the_mouse_is_and_following_keeps_the_robot_in_the_mid
     before = page.evaluate("replay.screen(0)")
     page.mouse.move(x, y)
     page.mouse.wheel(0, -300)
-    page.wait_for_function("(before) => replay.screen(0)[0] < before - 50", arg=before[0])
+    wait_for(partial(page.evaluate, "(before) => replay.screen(0)[0] < before - 50", before[0]))
     assert page.evaluate("replay.screen(2)") == pytest.approx([x, y], abs=0.5)
     page.evaluate("replay.select(0)")
     page.check("#follow")
@@ -297,7 +299,7 @@ def test_thousand_robots_are_drawn_frame_by_frame(browser: Browser, tmp_path: Pa
     rows = walkers(1000, 3)
     page = show(browser, page_of(write(tmp_path / "run.feather", rows), "--tail", "1", "--links"))
     page.evaluate("replay.play()")
-    page.wait_for_function("replay.frames > 5")
+    wait_for(partial(page.evaluate, "replay.frames > 5"))
     assert page.evaluate("replay.count") == 1000
     assert page.said == []  # type: ignore[attr-defined]
 
