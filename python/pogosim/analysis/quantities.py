@@ -132,5 +132,5 @@ def numbers_in(values: pd.Series[Any]) -> npt.NDArray[np.float64] | None:
     if is_truth:
         return np.asarray(values.astype("boolean").to_numpy(dtype=float, na_value=np.nan))
     if types.is_integer_dtype(values) or types.is_float_dtype(values):
-        return usable(values.to_numpy(dtype=float, na_value=np.nan))
+        return usable(values)
     return None

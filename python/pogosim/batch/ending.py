@@ -9,11 +9,11 @@ import logging
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from types import FrameType
-from typing import Any, NoReturn
+from typing import Any
 
 from pogosim.batch.errors import BatchError, NothingSelectedError, reason
 from pogosim.batch.run_options import DONE, INTERRUPTED, NO_SUCH_OUTPUT, RUNS_FAILED, WRONG
+from pogosim.interrupting import interrupt
 from pogosim.lines import LineFormatter, say_parts
 
 log = logging.getLogger("pogobatch")
@@ -37,11 +37,6 @@ class RunsFailedError(Exception):
         super().__init__(message)
         self.report = report
         self.is_said = is_said
-
-
-def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
-    """End the batch as Ctrl-C does."""
-    raise KeyboardInterrupt
 
 
 def catch_signals() -> None:

@@ -7,14 +7,13 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from types import FrameType
-from typing import NoReturn
 
 import pogosim
 from pogosim.arguments import shown
 from pogosim.command.parser import complain, warn
 from pogosim.errors import ToolError
 from pogosim.extensions import ExtensionError, Own, Table, takes
+from pogosim.interrupting import interrupt
 from pogosim.lines import printable_lines, say, say_error
 from pogosim.nearest_name import listed, unknown
 from pogosim.outputs import told
@@ -138,11 +137,6 @@ def process(prog: str, command: Callable[[], int]) -> int:
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, interrupt)
     return last(ended(prog, lambda: last(command())))
-
-
-def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
-    """End the command as Ctrl-C does: it removes what it has half written."""
-    raise KeyboardInterrupt
 
 
 def last(code: int) -> int:

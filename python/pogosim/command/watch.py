@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import functools
 import ipaddress
 import math
 import socket
 import webbrowser
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +26,7 @@ from pogosim.extras import installing
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
 from pogosim.lines import printable
-from pogosim.simulation.errors import ConfigurationError, ProgramFailedError, SimulationError
+from pogosim.simulation.errors import ProgramFailedError, SimulationError
 
 if TYPE_CHECKING:
     from pogosim.simulation import Simulation
@@ -171,46 +170,6 @@ def data_file_in(configuration: Path, settings: dict[str, Any]) -> tuple[str, bo
     return str(values.get("data_filename", "data.feather")), values.get("enable_data_logging", True) is not False
 
 
-def kept(path: Path) -> Path | None:
-    """Let a data file have another name, and return it; None: there is no need.
-
-    Raises:
-        ConfigurationError: It cannot have another one.
-    """
-    from pogosim.watch.kept_files import keep
-
-    try:
-        return keep(path)
-    except OSError as error:
-        raise ConfigurationError(f"'{printable(path)}' cannot be kept: {error.strerror}") from None
-
-
-def tell_of_kept(path: Path, name: Path | None) -> None:
-    """Say what the data file of an earlier run is called now."""
-    from pogosim.watch.terminal import print_out
-
-    if name is not None:
-        print_out(f"{printable(path)} of an earlier run is {name.name} now.")
-
-
-def keep_for_reset(path: Path) -> None:
-    """Keep the data file of a run that has ended."""
-    tell_of_kept(path, kept(path))
-
-
-@contextlib.contextmanager
-def kept_for_run(path: Path, is_written: bool) -> Iterator[None]:
-    """Keep a data file that a run would replace; it has its name back if there is no run."""
-    name = kept(path) if is_written else None
-    try:
-        yield
-    except BaseException:
-        if name is not None:
-            name.rename(path.resolve())
-        raise
-    tell_of_kept(path, name)
-
-
 def watch(options: argparse.Namespace, prog: str) -> int:
     """Run the program and serve its page, until Ctrl-C."""
     try:
@@ -222,6 +181,7 @@ def watch(options: argparse.Namespace, prog: str) -> int:
     import asyncio  # takes a while
 
     from pogosim.simulation import Simulation
+    from pogosim.watch.kept_files import keep_for_reset, kept_for_run
     from pogosim.watch.live import LiveRun
     from pogosim.watch.page import watch_page
     from pogosim.watch.terminal import Signals, told

@@ -75,7 +75,7 @@ def holds_numbers(values: pd.Series[Any]) -> bool:
 
 def numbers_of(values: pd.Series[Any]) -> Floats:
     """Usable values of a column of numbers, NaN where there is none. Shape (n,)."""
-    return usable(values.to_numpy(dtype=float, na_value=np.nan))
+    return usable(values)
 
 
 def labels_of(values: pd.Series[Any]) -> list[str]:

@@ -38,6 +38,7 @@ from pogosim.several_files import configuration_of
 from pogosim.shapes import Floats, Shape
 from pogosim.times import slack_s, with_exact_times
 from pogosim.utils import load_dataframe
+from pogosim.view.beginning import view_of
 
 # Robots of the real swarm, where a file does not say.
 UNKNOWN = Kind("robots", Shape(radius_mm=POGOBOT_RADIUS_MM), communication_radius_mm=COMMUNICATION_RADIUS_MM)
@@ -209,10 +210,9 @@ def read_recording(
 
 def colours_of_view(configuration: Mapping[str, Any], rows: pd.DataFrame) -> str:
     """Return the column that colours objects by the section `view` of a configuration; "": LEDs."""
-    view = configuration.get("view")
-    name = view.get("color_by") if isinstance(view, dict) else None
-    if not isinstance(name, str) or name in ("", SPEED) or list(rows.columns).count(name) == 1:
-        return name if isinstance(name, str) else ""
+    name = str(view_of(configuration).get("color_by", ""))
+    if name in ("", SPEED) or list(rows.columns).count(name) == 1:
+        return name
     warnings.warn(f"view.color_by: the data file has no column {name}", MissingColumnWarning, stacklevel=3)
     return ""
 
