@@ -1,13 +1,17 @@
 # Finds Apache Arrow C++ (10 or later): the system's, else the one inside the pyarrow wheel of a Python environment.
 #
-# Input:   POGOSIM_PYTHON     Python that has pyarrow (default: the project's own .venv, which ./build.sh makes; in a build of
+# Input:   POGOSIM_PYARROW    folder of an unpacked pyarrow package, for builds for another machine (default: none)
+#          POGOSIM_PYTHON     Python that has pyarrow (default: the project's own .venv, which ./build.sh makes; in a build of
 #                            the Python package, the Python of that build, whose pyarrow is always used)
 # Output:  pogosim::arrow     target to link: headers (as system headers) and library
 #          pogosim::parquet   the same with Parquet, if it is there
 #          PogosimArrow_FOUND, PogosimArrow_VERSION, PogosimArrow_ORIGIN
 #          PogosimArrow_LIBRARY_DIR   folder of the wheel's library, for RPATHs; empty for the system's
 
-if(SKBUILD)
+set(POGOSIM_PYARROW "" CACHE PATH "Folder of an unpacked pyarrow package to use, and no other Arrow")
+if(POGOSIM_PYARROW)
+    set(Arrow_FOUND OFF)
+elseif(SKBUILD)
     set(POGOSIM_PYTHON "${Python_EXECUTABLE}")
 else()
     set(POGOSIM_PYTHON "${PROJECT_SOURCE_DIR}/.venv/bin/python" CACHE FILEPATH
@@ -28,12 +32,19 @@ if(Arrow_FOUND AND Arrow_VERSION VERSION_GREATER_EQUAL 10)
     endif()
     set(PogosimArrow_VERSION "${Arrow_VERSION}")
     set(PogosimArrow_ORIGIN "${Arrow_DIR}")
-elseif(EXISTS "${POGOSIM_PYTHON}")
+elseif(POGOSIM_PYARROW OR EXISTS "${POGOSIM_PYTHON}")
     # Asked anew at each configuration: the wheel may have been replaced by another version.
-    execute_process(
-        COMMAND "${POGOSIM_PYTHON}" ${_isolated} -c
-            "import pyarrow; print(pyarrow.__version__, pyarrow.get_include(), *pyarrow.get_library_dirs(), sep=';', end='')"
-        OUTPUT_VARIABLE _pyarrow RESULT_VARIABLE _pyarrow_result ERROR_VARIABLE _pyarrow_error)
+    if(POGOSIM_PYARROW)
+        file(STRINGS "${POGOSIM_PYARROW}/include/arrow/util/config.h" _pyarrow REGEX "ARROW_VERSION_STRING")
+        string(REGEX REPLACE ".*\"([0-9.]+).*" "\\1;${POGOSIM_PYARROW}/include;${POGOSIM_PYARROW}" _pyarrow "${_pyarrow}")
+        set(_pyarrow_result 0)
+        set(POGOSIM_PYTHON "${POGOSIM_PYARROW}")
+    else()
+        execute_process(
+            COMMAND "${POGOSIM_PYTHON}" ${_isolated} -c
+                "import pyarrow; print(pyarrow.__version__, pyarrow.get_include(), *pyarrow.get_library_dirs(), sep=';', end='')"
+            OUTPUT_VARIABLE _pyarrow RESULT_VARIABLE _pyarrow_result ERROR_VARIABLE _pyarrow_error)
+    endif()
     if(_pyarrow_result EQUAL 0)
         list(POP_FRONT _pyarrow PogosimArrow_VERSION _arrow_include)
         # The wheel holds the library under its versioned name only: libarrow.so.2600, libarrow.2600.dylib.

@@ -12,11 +12,15 @@ if(TARGET pogosim_parquet)
     list(APPEND tables pogosim_parquet)
 endif()
 
-if(SKBUILD)
+if(POGOSIM_PYTHON_PACKAGE)
     # A Python package: in site-packages/pogosim/simulator/lib, with pyarrow beside pogosim. Wheels cannot hold links, so the
     # library has no versions in its name.
     set_target_properties(pogosim_library ${tables} PROPERTIES
         INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../pyarrow")
+    if(POGOSIM_SDL_FROM_PACKAGE)  # pysdl2-dll, beside pogosim, too
+        set_target_properties(pogosim_window PROPERTIES
+            INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>/../../../sdl2dll/dll")
+    endif()
 else()
     # The installed library finds what is not in a system folder where it was at build time. CMake leaves folders inside of
     # the project out of that, such as the one of the Arrow in .venv, so this one is named.

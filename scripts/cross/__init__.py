@@ -1,0 +1,1 @@
+"""Builds for other machines: older C libraries, other processors, macOS."""

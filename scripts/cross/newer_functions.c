@@ -1,0 +1,135 @@
+// Functions that the C library has got since glibc 2.27 and that our code, or the C++ library's, calls: for libraries that
+// run on older machines, see old_libraries.py. Each module has its own, which others do not see.
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+// Not for other modules.
+#define OWN __attribute__((visibility("hidden")))
+
+// glibc 2.32: whether a process has never had a second thread. "No" is always true enough: atomic operations stay atomic.
+OWN char __libc_single_threaded = 0;
+
+// glibc 2.33: until then, headers made calls of these functions with the layout's version of struct stat.
+#ifdef __x86_64__
+#define STAT_VERSION 1
+#else
+#define STAT_VERSION 0
+#endif
+int __xstat(int version, char const* path, struct stat* status);
+int __lxstat(int version, char const* path, struct stat* status);
+int __fxstat(int version, int file, struct stat* status);
+int __fxstatat(int version, int folder, char const* path, struct stat* status, int flags);
+
+OWN int stat(char const* path, struct stat* status) {
+    return __xstat(STAT_VERSION, path, status);
+}
+OWN int lstat(char const* path, struct stat* status) {
+    return __lxstat(STAT_VERSION, path, status);
+}
+OWN int fstat(int file, struct stat* status) {
+    return __fxstat(STAT_VERSION, file, status);
+}
+OWN int fstatat(int folder, char const* path, struct stat* status, int flags) {
+    return __fxstatat(STAT_VERSION, folder, path, status, flags);
+}
+
+// A function of the machine's library, if that is new enough; null otherwise.
+static void* of_this_machine(char const* name) {
+    return dlsym(RTLD_DEFAULT, name);
+}
+
+// glibc 2.33: the older function counts bytes in an int. Its values are right modulo 4 GiB.
+OWN struct mallinfo2 mallinfo2(void) {
+    struct mallinfo2 result;
+    memset(&result, 0, sizeof result);
+    struct mallinfo2 (*newer)(void) = NULL;
+    void* const found = of_this_machine("mallinfo2");
+    memcpy(&newer, &found, sizeof newer);
+    if (newer != NULL) {
+        return newer();
+    }
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+    struct mallinfo const older = mallinfo();
+#pragma GCC diagnostic pop
+    result.arena = (unsigned)older.arena;
+    result.hblkhd = (unsigned)older.hblkhd;
+    result.uordblks = (unsigned)older.uordblks;
+    result.fordblks = (unsigned)older.fordblks;
+    return result;
+}
+
+// glibc 2.34: fork() without the functions of pthread_atfork(), which older libraries cannot leave out. Its other name: a
+// library may have a fork() of its own, which calls this.
+pid_t __fork(void);
+OWN pid_t _Fork(void) {
+    pid_t (*newer)(void) = NULL;
+    void* const found = of_this_machine("_Fork");
+    memcpy(&newer, &found, sizeof newer);
+    return newer != NULL ? newer() : __fork();
+}
+
+// glibc 2.30: waits until a time of a clock. Older ones know the clock of the condition only, here that of the day.
+OWN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
+                               struct timespec const* until) {
+    int (*newer)(pthread_cond_t*, pthread_mutex_t*, clockid_t, struct timespec const*) = NULL;
+    void* const found = of_this_machine("pthread_cond_clockwait");
+    memcpy(&newer, &found, sizeof newer);
+    if (newer != NULL) {
+        return newer(condition, mutex, clock, until);
+    }
+    long const second_ns = 1000000000L;
+    struct timespec now;
+    struct timespec day;
+    if (clock_gettime(clock, &now) != 0 || clock_gettime(CLOCK_REALTIME, &day) != 0) {
+        return errno;
+    }
+    long ns = day.tv_nsec + until->tv_nsec - now.tv_nsec;
+    day.tv_sec += until->tv_sec - now.tv_sec;
+    for (; ns < 0; ns += second_ns) {
+        --day.tv_sec;
+    }
+    for (; ns >= second_ns; ns -= second_ns) {
+        ++day.tv_sec;
+    }
+    day.tv_nsec = ns;
+    return pthread_cond_timedwait(condition, mutex, &day);
+}
+
+// glibc 2.34: the start of an executable. Older ones do not run its constructors unless they are told to: the code that a
+// compiler of today puts before main() leaves that to the newer function.
+typedef int Main(int count, char** words, char** environment);
+typedef void Constructor(int count, char** words, char** environment);
+#ifdef __x86_64__
+__asm__(".symver start_of_old, __libc_start_main@GLIBC_2.2.5");
+#else
+__asm__(".symver start_of_old, __libc_start_main@GLIBC_2.17");
+#endif
+int start_of_old(Main* main, int count, char** words, int (*init)(int, char**, char**), void (*fini)(void),
+                 void (*end_of_loader)(void), void* stack);
+extern Constructor* __init_array_start[];
+extern Constructor* __init_array_end[];
+extern void (*__fini_array_start[])(void);
+extern void (*__fini_array_end[])(void);
+
+static int construct(int count, char** words, char** environment) {
+    for (Constructor** next = __init_array_start; next != __init_array_end; ++next) {
+        (*next)(count, words, environment);
+    }
+    return 0;
+}
+
+OWN int __libc_start_main(Main* main, int count, char** words, int (*init)(int, char**, char**), void (*fini)(void),
+                          void (*end_of_loader)(void), void* stack) {
+    (void)init;
+    return start_of_old(main, count, words, construct, fini, end_of_loader, stack);
+}

@@ -1,0 +1,171 @@
+"""Makes what a compiler of today links against to get programs that run with C and C++ libraries of years ago.
+
+    python scripts/cross/old_libraries.py FOLDER                                       # for this machine
+    python scripts/cross/old_libraries.py FOLDER --compiler aarch64-linux-gnu-g++      # for another one
+
+A program asks for each function of the C library by a version, that of the library that was there when it was linked,
+and does not start with an older library. In FOLDER, a compiler that is called with `-L FOLDER` finds, in place of its
+own:
+
+- the C library with those functions and versions only that were there in glibc 2.27 (2018). It is a list of names,
+  without code: a program that runs meets the library of its machine;
+- the C++ library of gcc 8, in the same way; what our code needs of newer ones comes from the compiler's static library
+  and becomes part of the program. Compilers for old distributions do the same (Red Hat's gcc-toolset);
+- newer_functions.c, the few functions of newer C libraries that are needed all the same.
+
+Debian's packages of the compiler have all that is read: the libraries, and libstdc++_pic.a (libstdc++-12-pic).
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shlex
+import subprocess
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from elftools.elf.elffile import ELFFile
+
+# The newest version of each series that programs may ask for.
+NEWEST = {"GLIBC": (2, 27), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11), "GCC": (7, 0, 0)}
+STUBS = ("libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1")
+# Parts of the C library until glibc 2.34, empty since. On older machines, programs need the functions in them.
+FORMER_PARTS = ("libpthread.so.0", "libdl.so.2", "librt.so.1")
+
+
+class Symbol(NamedTuple):
+    """A function or variable that a library exports."""
+
+    name: str
+    version: str
+    size: int  # in bytes; 0: a function
+
+
+def version_number(version: str) -> tuple[str, tuple[int, ...]]:
+    """Return the series of a version and its number: ("GLIBC", (2, 17)); no number for other names."""
+    series, _, number = version.partition("_")
+    return series, tuple(map(int, number.split("."))) if re.fullmatch(r"\d+(\.\d+)*", number) else ()
+
+
+def is_old(version: str) -> bool:
+    """Tell whether a program may ask for this version."""
+    series, number = version_number(version)
+    return number != () and series in NEWEST and number <= NEWEST[series]
+
+
+def exported(library: Path) -> list[Symbol]:
+    """Return what a library exports, with the newest version of each name that programs may ask for."""
+    newest: dict[str, Symbol] = {}
+    with library.open("rb") as file:
+        elf = ELFFile(file)
+        symbols: Any = elf.get_section_by_name(".dynsym")
+        versions: Any = elf.get_section_by_name(".gnu.version")
+        definitions: Any = elf.get_section_by_name(".gnu.version_d")
+        names = {entry["vd_ndx"]: next(auxiliaries).name for entry, auxiliaries in definitions.iter_versions()}
+        for index, symbol in enumerate(symbols.iter_symbols()):
+            number = versions.get_symbol(index)["ndx"]
+            version = names.get(number & 0x7FFF, "") if isinstance(number, int) else ""
+            if symbol["st_shndx"] in ("SHN_UNDEF", "SHN_ABS") or not is_old(version):
+                continue
+            is_variable = symbol["st_info"]["type"] == "STT_OBJECT"
+            found = Symbol(symbol.name, version, symbol["st_size"] if is_variable else 0)
+            known = newest.get(found.name)
+            if known is None or version_number(known.version) < version_number(version):
+                newest[found.name] = found
+    return sorted(newest.values())
+
+
+def assembly(symbols: list[Symbol]) -> str:
+    """Return a program in assembly language that defines these symbols, and nothing else."""
+    lines = []
+    for index, symbol in enumerate(symbols):
+        label = f"pogosim_stub_{index}"
+        kind, section = ("object", ".bss") if symbol.size else ("function", ".text")
+        lines += [
+            section,
+            f".globl {label}",
+            f".type {label}, %{kind}",
+            f".symver {label}, {symbol.name}@@{symbol.version}",
+            f"{label}: .zero {max(symbol.size, 4)}",
+            f".size {label}, {max(symbol.size, 4)}",
+        ]
+    return "\n".join([*lines, '.section .note.GNU-stack, "", %progbits', ""])
+
+
+def version_script(symbols: list[Symbol]) -> str:
+    """Return the script that tells the linker which versions there are."""
+    versions = sorted({symbol.version for symbol in symbols}, key=version_number)
+    return "".join(f"{version} {{ }};\n" for version in versions) + "OTHERS { local: *; };\n"
+
+
+class Compiler:
+    """A compiler of C++, gcc's."""
+
+    def __init__(self, command: str) -> None:
+        self.command = shlex.split(command)
+
+    def run(self, *words: str | Path) -> None:
+        """Run it; raises CalledProcessError if it fails."""
+        subprocess.run([*self.command, *words], check=True)
+
+    def file(self, name: str) -> Path:
+        """Return the path of one of its libraries; ends the program if it has none."""
+        answer = subprocess.run(
+            [*self.command, f"-print-file-name={name}"], check=True, capture_output=True, text=True
+        ).stdout.strip()
+        path = Path(answer)
+        if not path.is_absolute():
+            raise SystemExit(
+                f"old_libraries.py: {' '.join(self.command)} has no {name}. Install its packages (Debian: "
+                "libstdc++-12-pic, or libstdc++-12-pic-arm64-cross)"
+            )
+        return path.resolve()
+
+
+def make_stub(folder: Path, name: str, symbols: list[Symbol], compiler: Compiler) -> None:
+    """Make a library FOLDER/stubs/NAME that exports these symbols and has no code."""
+    stubs = folder / "stubs"
+    stubs.mkdir(parents=True, exist_ok=True)
+    source, script = stubs / f"{name}.s", stubs / f"{name}.map"
+    source.write_text(assembly(symbols), encoding="utf-8")
+    script.write_text(version_script(symbols), encoding="utf-8")
+    options = ["-nostdlib", "-shared", f"-Wl,-soname,{name}", f"-Wl,--version-script,{script}"]
+    compiler.run(*options, source, "-o", stubs / name)
+
+
+def make_old_libraries(folder: Path, command: str) -> None:
+    """Make all libraries in a folder, for a compiler given as the words of a command line."""
+    compiler = Compiler(command)
+    for name in STUBS:
+        make_stub(folder, name, exported(compiler.file(name)), compiler)
+    for name in FORMER_PARTS:
+        make_stub(folder, name, [], compiler)
+    newer = folder / "stubs" / "newer_functions.o"
+    source = Path(__file__).with_name("newer_functions.c")
+    compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", newer)
+    stubs = folder / "stubs"
+    parts = " ".join(str(stubs / name) for name in FORMER_PARTS)
+    nonshared = compiler.file("libc_nonshared.a")
+    loader = next(iter(sorted(compiler.file("libc.so.6").parent.glob("ld-linux-*.so.*"))))
+    write = {
+        "libc.so": f"GROUP ( {newer} {stubs / 'libc.so.6'} {nonshared} {parts} AS_NEEDED ( {loader} ) )",
+        "libm.so": f"INPUT ( {stubs / 'libm.so.6'} )",
+        "libstdc++.so": f"INPUT ( {stubs / 'libstdc++.so.6'} {compiler.file('libstdc++_pic.a')} )",
+        "libgcc_s.so": f"GROUP ( {stubs / 'libgcc_s.so.1'} -lgcc )",
+    }
+    for name, text in write.items():
+        (folder / name).write_text(f"/* {Path(__file__).name} */\n{text}\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Run the command line."""
+    parser = argparse.ArgumentParser(description="Makes libraries to link against for machines with older ones.")
+    parser.add_argument("folder", type=Path, help="where to make them")
+    parser.add_argument("--compiler", default="g++", help="compiler of C++ that will link (%(default)s)")
+    options = parser.parse_args()
+    make_old_libraries(options.folder.resolve(), options.compiler)
+
+
+if __name__ == "__main__":
+    main()
