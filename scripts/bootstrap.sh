@@ -20,6 +20,8 @@ apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg ch
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
     g++-aarch64-linux-gnu qemu-user gdb gdb-multiarch valgrind slurmctld slurmd slurm-client munge"
 apt_tidy_packages="clang-tidy"
+# For wheels for other machines: what fetches and builds their libraries.
+apt_wheel_packages="dpkg-dev debian-archive-keyring m4 g++-aarch64-linux-gnu"
 brew_packages="cmake ninja ccache pkgconf box2d yaml-cpp spdlog fmt cli11 googletest google-benchmark sdl2 imgui libpng boost
     python3"
 brew_test_packages="doxygen ffmpeg"
@@ -84,10 +86,12 @@ install_with_brew() {
     brew install -q $missing || fail "brew install$missing" "See Homebrew's message above"
 }
 
-# install_packages build|test|tidy
+# install_packages build|wheel|test|tidy
 install_packages() {
     local apt=$apt_packages brew=$brew_packages
-    if [ "$1" != build ]; then
+    if [ "$1" = wheel ]; then
+        apt="$apt $apt_wheel_packages"
+    elif [ "$1" != build ]; then
         apt="$apt $apt_test_packages"
         brew="$brew $brew_test_packages"
     fi

@@ -182,8 +182,8 @@ def build(name: str) -> Path:
     defined: dict[str, str | Path] = {
         **ccache_variables(),
         "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name(f"{name}.cmake"),
-        "SOURCES": sources,
-        "PREFIX": prefix,
+        "POGOSIM_SOURCES": sources,
+        "POGOSIM_PREFIX": prefix,
     }
     words = [f"-D{key}={value}" for key, value in defined.items()]
     run("cmake", "-S", Path(__file__).parent, "-B", folder / "build", "-G", "Ninja", *words)

@@ -13,7 +13,7 @@ own:
   and becomes part of the program. Compilers for old distributions do the same (Red Hat's gcc-toolset);
 - newer_functions.c, the few functions of newer C libraries that are needed all the same.
 
-Debian's packages of the compiler have all that is read: the libraries, and libstdc++_pic.a (libstdc++-12-pic).
+The libraries that are read are those of the compiler itself, which must be gcc.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ NEWEST = {"GLIBC": (2, 27), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11), "GCC": 
 STUBS = ("libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1")
 # Parts of the C library until glibc 2.34, empty since. On older machines, programs need the functions in them.
 FORMER_PARTS = ("libpthread.so.0", "libdl.so.2", "librt.so.1")
+# Kinds of variables in libraries: their kinds in assembly language, and the sections that they are in.
+VARIABLES = {"STT_OBJECT": ("object", ".bss"), "STT_TLS": ("tls_object", '.tbss, "awT", %nobits')}
 
 
 class Symbol(NamedTuple):
@@ -39,7 +41,8 @@ class Symbol(NamedTuple):
 
     name: str
     version: str
-    size: int  # in bytes; 0: a function
+    kind: str  # "STT_FUNC", "STT_OBJECT", ..., as in its library
+    size: int  # in bytes
 
 
 def version_number(version: str) -> tuple[str, tuple[int, ...]]:
@@ -68,8 +71,7 @@ def exported(library: Path) -> list[Symbol]:
             version = names.get(number & 0x7FFF, "") if isinstance(number, int) else ""
             if symbol["st_shndx"] in ("SHN_UNDEF", "SHN_ABS") or not is_old(version):
                 continue
-            is_variable = symbol["st_info"]["type"] == "STT_OBJECT"
-            found = Symbol(symbol.name, version, symbol["st_size"] if is_variable else 0)
+            found = Symbol(symbol.name, version, symbol["st_info"]["type"], symbol["st_size"])
             known = newest.get(found.name)
             if known is None or version_number(known.version) < version_number(version):
                 newest[found.name] = found
@@ -81,9 +83,9 @@ def assembly(symbols: list[Symbol]) -> str:
     lines = []
     for index, symbol in enumerate(symbols):
         label = f"pogosim_stub_{index}"
-        kind, section = ("object", ".bss") if symbol.size else ("function", ".text")
+        kind, section = VARIABLES.get(symbol.kind, ("function", ".text"))
         lines += [
-            section,
+            f".section {section}",
             f".globl {label}",
             f".type {label}, %{kind}",
             f".symver {label}, {symbol.name}@@{symbol.version}",
@@ -109,16 +111,16 @@ class Compiler:
         """Run it; raises CalledProcessError if it fails."""
         subprocess.run([*self.command, *words], check=True)
 
+    def answer(self, question: str) -> str:
+        """Return what it prints if it is called with an option."""
+        return subprocess.run([*self.command, question], check=True, capture_output=True, text=True).stdout.strip()
+
     def file(self, name: str) -> Path:
         """Return the path of one of its libraries; ends the program if it has none."""
-        answer = subprocess.run(
-            [*self.command, f"-print-file-name={name}"], check=True, capture_output=True, text=True
-        ).stdout.strip()
-        path = Path(answer)
+        path = Path(self.answer(f"-print-file-name={name}"))
         if not path.is_absolute():
             raise SystemExit(
-                f"old_libraries.py: {' '.join(self.command)} has no {name}. Install its packages (Debian: "
-                "libstdc++-12-pic, or libstdc++-12-pic-arm64-cross)"
+                f"old_libraries.py: {' '.join(self.command)} has no {name}; expected a gcc with its libraries"
             )
         return path.resolve()
 
@@ -134,6 +136,17 @@ def make_stub(folder: Path, name: str, symbols: list[Symbol], compiler: Compiler
     compiler.run(*options, source, "-o", stubs / name)
 
 
+def make_newer_functions(folder: Path, compiler: Compiler) -> Path:
+    """Make a static library of functions that the old ones lack, and return it."""
+    code, library = folder / "newer_functions.o", folder / "libnewer_functions.a"
+    source = Path(__file__).with_name("newer_functions.c")
+    compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", code)
+    archiver = compiler.answer("-print-prog-name=ar")
+    library.unlink(missing_ok=True)
+    subprocess.run([archiver, "rc", library, code], check=True)
+    return library
+
+
 def make_old_libraries(folder: Path, command: str) -> None:
     """Make all libraries in a folder, for a compiler given as the words of a command line."""
     compiler = Compiler(command)
@@ -141,18 +154,16 @@ def make_old_libraries(folder: Path, command: str) -> None:
         make_stub(folder, name, exported(compiler.file(name)), compiler)
     for name in FORMER_PARTS:
         make_stub(folder, name, [], compiler)
-    newer = folder / "stubs" / "newer_functions.o"
-    source = Path(__file__).with_name("newer_functions.c")
-    compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", newer)
     stubs = folder / "stubs"
-    parts = " ".join(str(stubs / name) for name in FORMER_PARTS)
+    newer = make_newer_functions(stubs, compiler)
+    parts = " ".join(f'"{stubs / name}"' for name in FORMER_PARTS)
     nonshared = compiler.file("libc_nonshared.a")
     loader = next(iter(sorted(compiler.file("libc.so.6").parent.glob("ld-linux-*.so.*"))))
     write = {
-        "libc.so": f"GROUP ( {newer} {stubs / 'libc.so.6'} {nonshared} {parts} AS_NEEDED ( {loader} ) )",
-        "libm.so": f"INPUT ( {stubs / 'libm.so.6'} )",
-        "libstdc++.so": f"INPUT ( {stubs / 'libstdc++.so.6'} {compiler.file('libstdc++_pic.a')} )",
-        "libgcc_s.so": f"GROUP ( {stubs / 'libgcc_s.so.1'} -lgcc )",
+        "libc.so": f'GROUP ( "{newer}" "{stubs}/libc.so.6" "{nonshared}" {parts} AS_NEEDED ( "{loader}" ) )',
+        "libm.so": f'INPUT ( "{stubs}/libm.so.6" )',
+        "libstdc++.so": f'INPUT ( "{stubs}/libstdc++.so.6" "{compiler.file("libstdc++.a")}" )',
+        "libgcc_s.so": f'GROUP ( "{stubs}/libgcc_s.so.1" -lgcc )',
     }
     for name, text in write.items():
         (folder / name).write_text(f"/* {Path(__file__).name} */\n{text}\n", encoding="utf-8")
