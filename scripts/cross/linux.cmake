@@ -9,4 +9,7 @@ set(pogosim_old_libraries "${pogosim_cross}/old")
 foreach(kind IN ITEMS EXE SHARED MODULE)
     set(CMAKE_${kind}_LINKER_FLAGS_INIT "-L${pogosim_old_libraries} -Wl,--no-as-needed")
 endforeach()
+foreach(kind IN ITEMS SHARED MODULE)  # what no library offers is told now, not when a program starts
+    string(APPEND CMAKE_${kind}_LINKER_FLAGS_INIT " -Wl,-z,defs")
+endforeach()
 include("${CMAKE_CURRENT_LIST_DIR}/prefix.cmake")

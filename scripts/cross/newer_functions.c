@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -40,6 +41,22 @@ OWN int fstat(int file, struct stat* status) {
 }
 OWN int fstatat(int folder, char const* path, struct stat* status, int flags) {
     return __fxstatat(STAT_VERSION, folder, path, status, flags);
+}
+
+// The same with large files, which are the same on 64-bit machines.
+OWN int stat64(char const* path, struct stat64* status) {
+    return __xstat(STAT_VERSION, path, (struct stat*)status);
+}
+OWN int lstat64(char const* path, struct stat64* status) {
+    return __lxstat(STAT_VERSION, path, (struct stat*)status);
+}
+OWN int fstat64(int file, struct stat64* status) {
+    return __fxstat(STAT_VERSION, file, (struct stat*)status);
+}
+
+// glibc 2.28.
+OWN int renameat2(int old_folder, char const* old_path, int new_folder, char const* new_path, unsigned flags) {
+    return (int)syscall(SYS_renameat2, old_folder, old_path, new_folder, new_path, flags);
 }
 
 // A function of the machine's library, if that is new enough; null otherwise.
@@ -103,33 +120,4 @@ OWN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex
     }
     day.tv_nsec = ns;
     return pthread_cond_timedwait(condition, mutex, &day);
-}
-
-// glibc 2.34: the start of an executable. Older ones do not run its constructors unless they are told to: the code that a
-// compiler of today puts before main() leaves that to the newer function.
-typedef int Main(int count, char** words, char** environment);
-typedef void Constructor(int count, char** words, char** environment);
-#ifdef __x86_64__
-__asm__(".symver start_of_old, __libc_start_main@GLIBC_2.2.5");
-#else
-__asm__(".symver start_of_old, __libc_start_main@GLIBC_2.17");
-#endif
-int start_of_old(Main* main, int count, char** words, int (*init)(int, char**, char**), void (*fini)(void),
-                 void (*end_of_loader)(void), void* stack);
-extern Constructor* __init_array_start[];
-extern Constructor* __init_array_end[];
-extern void (*__fini_array_start[])(void);
-extern void (*__fini_array_end[])(void);
-
-static int construct(int count, char** words, char** environment) {
-    for (Constructor** next = __init_array_start; next != __init_array_end; ++next) {
-        (*next)(count, words, environment);
-    }
-    return 0;
-}
-
-OWN int __libc_start_main(Main* main, int count, char** words, int (*init)(int, char**, char**), void (*fini)(void),
-                          void (*end_of_loader)(void), void* stack) {
-    (void)init;
-    return start_of_old(main, count, words, construct, fini, end_of_loader, stack);
 }

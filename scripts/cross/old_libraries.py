@@ -11,7 +11,7 @@ own:
   without code: a program that runs meets the library of its machine;
 - the C++ library of gcc 8, in the same way; what our code needs of newer ones comes from the compiler's static library
   and becomes part of the program. Compilers for old distributions do the same (Red Hat's gcc-toolset);
-- newer_functions.c, the few functions of newer C libraries that are needed all the same.
+- newer_functions.c and start_of_executable.c, the little of newer C libraries that is needed all the same.
 
 The libraries that are read are those of the compiler itself, which must be gcc.
 """
@@ -137,13 +137,13 @@ def make_stub(folder: Path, name: str, symbols: list[Symbol], compiler: Compiler
 
 
 def make_newer_functions(folder: Path, compiler: Compiler) -> Path:
-    """Make a static library of functions that the old ones lack, and return it."""
-    code, library = folder / "newer_functions.o", folder / "libnewer_functions.a"
-    source = Path(__file__).with_name("newer_functions.c")
-    compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", code)
-    archiver = compiler.answer("-print-prog-name=ar")
+    """Make a static library of what the old ones lack, and return it."""
+    library = folder / "libnewer_functions.a"
     library.unlink(missing_ok=True)
-    subprocess.run([archiver, "rc", library, code], check=True)
+    for name in ("newer_functions", "start_of_executable"):
+        source, code = Path(__file__).with_name(f"{name}.c"), folder / f"{name}.o"
+        compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", code)
+        subprocess.run([compiler.answer("-print-prog-name=ar"), "rc", library, code], check=True)
     return library
 
 
