@@ -148,7 +148,7 @@ def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     facts.write_text(re.sub(r"(?m)^Tag: .*$", f"Tag: py3-none-{platform}", text), encoding="utf-8")
     wheel = packed(unpacked, folder / "patched")
     if platform.startswith("manylinux"):  # fails if something in it is too new for that
-        return repaired(wheel, folder / "repaired", "--plat", platform)
+        return repaired(wheel, folder / "repaired", "--plat", platform, "--only-plat")
     return wheel
 
 
