@@ -149,16 +149,46 @@ float SdlWindow::text_scale() const {
 
 namespace {
 
-struct Display;  // Xlib's
+// Xlib's, without its headers.
+struct Display;
+struct XErrorEvent {
+    int type;
+    Display* display;
+    unsigned long resource_id;
+    unsigned long serial;
+    unsigned char error_code;
+    unsigned char request_code;
+    unsigned char minor_code;
+};
+using LostHandler = int (*)(Display*);
+using ErrorHandler = int (*)(Display*, XErrorEvent*);
+constexpr unsigned char kBadRequest = 1;
+constexpr unsigned char kBadAccess = 10;
+constexpr unsigned char kFirstExtension = 128;
+constexpr unsigned char kShmAttach = 1;
+
 sigjmp_buf* jump_point = nullptr;
+ErrorHandler (*set_error_handler)(ErrorHandler) = nullptr;
 
 int on_lost_connection(Display* /*display*/) {
     siglongjmp(*jump_point, 1);
 }
 
+/// A server on another machine (ssh -X, ssh -Y, TCP) has the extension for shared memory, and answers BadRequest to its
+/// use. SDL sends pictures over the connection instead only after BadAccess; otherwise the window would stay black.
+bool refuses_shared_memory(XErrorEvent const& error) {
+    return error.error_code == kBadRequest && error.request_code >= kFirstExtension && error.minor_code == kShmAttach;
+}
+
 /// Xlib's own one ends the program. An error of one request, such as for a window that is just closing, does no harm.
-int on_error(Display* /*display*/, void* /*error*/) {
-    return 0;
+int on_error(Display* display, XErrorEvent* error) {
+    if (!refuses_shared_memory(*error)) {
+        return 0;
+    }
+    error->error_code = kBadAccess;  // SDL's own handler has passed it on to this one, and keeps this one
+    ErrorHandler const sdl_handler = set_error_handler(on_error);
+    set_error_handler(sdl_handler);
+    return sdl_handler == on_error ? 0 : sdl_handler(display, error);
 }
 
 }  // namespace
@@ -170,13 +200,13 @@ void jump_when_display_is_lost(sigjmp_buf& point) {
         return;
     }
     jump_point = &point;
-    using SetLostHandler = void* (*)(int (*)(Display*));
-    using SetErrorHandler = void* (*)(int (*)(Display*, void*));
+    using SetLostHandler = LostHandler (*)(LostHandler);
     if (auto const set = reinterpret_cast<SetLostHandler>(dlsym(xlib, "XSetIOErrorHandler"))) {
         set(on_lost_connection);
     }
-    if (auto const set = reinterpret_cast<SetErrorHandler>(dlsym(xlib, "XSetErrorHandler"))) {
-        set(on_error);
+    set_error_handler = reinterpret_cast<decltype(set_error_handler)>(dlsym(xlib, "XSetErrorHandler"));
+    if (set_error_handler != nullptr) {
+        set_error_handler(on_error);
     }
 }
 

@@ -6,6 +6,7 @@ import ctypes
 import os
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,6 +20,9 @@ from running import Settings, write_scene
 Picture = npt.NDArray[np.uint8]
 
 WIDTH, HEIGHT = 1400, 1100  # of the display
+SCREEN = f"{WIDTH}x{HEIGHT}x24"
+RELAY = Path(__file__).with_name("ssh_relay.py")
+FIRST_PORT = 6000  # of display :0
 LONGEST_S = 30.0  # that anything takes on a busy machine
 
 
@@ -90,14 +94,14 @@ def read_xwd(dump: bytes) -> Picture:
 
 
 @contextmanager
-def open_display() -> Iterator[Display]:
-    """Start an X server without a screen, on the first free number."""
+def open_display(*options: str) -> Iterator[Display]:
+    """Start an X server without a screen, on the first free number; `options` are Xvfb's, such as "-auth", "FILE"."""
     assert shutil.which("Xvfb") and shutil.which("xdotool") and shutil.which("xwd"), (
         "install xvfb, xdotool and x11-apps"
     )
     read_end, write_end = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-nolisten", "tcp", "-noreset"],
+        ["Xvfb", "-displayfd", str(write_end), "-screen", "0", SCREEN, "-nolisten", "tcp", "-noreset", *options],
         pass_fds=[write_end],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -112,6 +116,22 @@ def open_display() -> Iterator[Display]:
     finally:
         server.terminate()
         server.wait()
+
+
+@contextmanager
+def forwarded(display: Display) -> Iterator[Display]:
+    """Return a display as it is seen through `ssh -X`: X servers refuse shared memory to a process named ssh."""
+    process = subprocess.Popen(
+        ["ssh", RELAY, display.name.removeprefix(":")], executable=sys.executable, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    try:
+        port = int(process.stdout.readline())
+        yield Display(f"127.0.0.1:{port - FIRST_PORT}", display.server)
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
 
 
 @dataclass

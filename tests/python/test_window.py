@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from display import Display, Picture, Shown, differ, ended, open_display, pixel_of, shown, wait_for
+from display import Display, Picture, Shown, differ, ended, forwarded, open_display, pixel_of, shown, wait_for
 from PIL import Image
 from running import Run, build_folder, run, run_command, write_scene
 from window_pictures import FOLDER, PICTURES, PLACES, difference, settled, take
@@ -440,6 +440,16 @@ def test_run_goes_on_when_the_display_goes_away(window_program: Path, tmp_path: 
     assert code == 0, text
     assert "the display is gone" in text
     assert Run(0, "", "", tmp_path).frame()["time"].max() == pytest.approx(4.0)
+
+
+def test_window_is_not_black_through_ssh(display: Display, window_program: Path, tmp_path: Path) -> None:
+    """The X server has the extension for shared memory, and refuses its use."""
+    with (
+        forwarded(display) as remote,
+        shown(remote, window_program, tmp_path, {**LONG, **FOUR}) as window,
+    ):
+        assert len(np.unique(window.shot().reshape(-1, 3), axis=0)) > 10
+        ended(window)
 
 
 def test_without_a_display_the_run_goes_on_without_a_window(window_program: Path, tmp_path: Path) -> None:
