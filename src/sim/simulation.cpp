@@ -345,7 +345,9 @@ void Simulation::open_window() {
         setup.scenery = snapshots().scenery();
         window_ = std::make_unique<WindowDriver>(*this, setup);
     } catch (std::runtime_error const& error) {
-        log().warn("the run has no window: {} (-g runs without one)", error.what());
+        log().warn(
+            "the run has no window: {} (-g runs without one; pogosim doctor and docs/displays.md say what to do)",
+            error.what());
         stop_inspecting();
     }
 }

@@ -457,6 +457,7 @@ def test_without_a_display_the_run_goes_on_without_a_window(window_program: Path
     result = run_command(window_program, tmp_path, ["-c", "scene.yaml"])
     assert result.code == 0
     assert "no window: there is no display" in result.text
+    assert "docs/displays.md" in result.text
     assert result.frame()["time"].max() == pytest.approx(2.0)
 
 

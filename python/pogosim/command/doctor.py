@@ -11,10 +11,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import pogosim
+from pogosim.command.display_check import check_window
+from pogosim.command.finding import Finding
 from pogosim.command.parser import Parser
 from pogosim.command.run import COMPILERS
 from pogosim.errors import ToolError
@@ -36,18 +37,6 @@ data_filename: data.feather
 console_filename: console.txt
 objects: {robots: {type: pogobot, nb: 3}}
 """
-# Loads a library as a program does; Python's own would tell less.
-LOAD = "import ctypes, sys; ctypes.CDLL(sys.argv[1])"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """What was found about one thing that users want to do."""
-
-    purpose: str
-    is_fine: bool
-    found: str
-    advice: str = ""
 
 
 def first_line(*command: str) -> str:
@@ -145,21 +134,6 @@ def check_shared_state(found: Installation) -> Finding:
     return Finding(purpose, True, "checked at every make sim")
 
 
-def check_window(found: Installation) -> Finding:
-    """Load the module of the window, and look for a display."""
-    modules = sorted(found.library.glob("libpogosim_view-v*"))
-    if not modules:
-        return Finding("Window", False, f"there is no libpogosim_view in {found.library}", "install Pogosim again")
-    done = subprocess.run([sys.executable, "-c", LOAD, modules[0]], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        return Finding("Window", False, last_line(done), "apt install libsdl2-2.0-0")
-    has_display = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
-    if not has_display and platform.system() != "Darwin":
-        found_none = "no display: neither DISPLAY nor WAYLAND_DISPLAY is set"
-        return Finding("Window", False, found_none, "run with -g, or connect with ssh -X; films need no display")
-    return Finding("Window", True, "the display and SDL are there")
-
-
 def check_films(found: Installation) -> Finding:  # noqa: ARG001
     """Look for ffmpeg."""
     if shutil.which("ffmpeg") is None:
@@ -215,7 +189,7 @@ def check_robots(found: Installation) -> Finding:  # noqa: ARG001
 
 
 # By purpose, what is most important first.
-CHECKS: dict[str, Callable[[Installation], Finding]] = {
+CHECKS: dict[str, Callable[[Installation], Finding | list[Finding]]] = {
     "Name": check_name,
     "C programs": check_c,
     "C++ programs": check_cpp,
@@ -230,12 +204,13 @@ CHECKS: dict[str, Callable[[Installation], Finding]] = {
 }
 
 
-def checked(purpose: str, found: Installation) -> Finding:
+def checked(purpose: str, found: Installation) -> list[Finding]:
     """Check one thing. What keeps the check itself from working is a finding, too."""
     try:
-        return CHECKS[purpose](found)
+        findings = CHECKS[purpose](found)
     except (ImportError, OSError, ToolError, ValueError) as error:
-        return Finding(purpose, False, f"it cannot be checked: {error}")
+        return [Finding(purpose, False, f"it cannot be checked: {error}")]
+    return findings if isinstance(findings, list) else [findings]
 
 
 def show(finding: Finding) -> None:
@@ -263,7 +238,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim doctor") -
     say(f"Pogosim {found.version} in {found.folder}, Python {python}, {platform.platform(terse=True)}")
     can_run = False
     for purpose in CHECKS:
-        finding = checked(purpose, found)
-        show(finding)
-        can_run = can_run or (finding.is_fine and purpose == "C programs")
+        for finding in checked(purpose, found):
+            show(finding)
+            can_run = can_run or (finding.is_fine and finding.purpose == "C programs")
     return 0 if can_run else 2

@@ -1,0 +1,40 @@
+"""Opens a hidden window, as a run does, and prints what came of it: python3 open_window.py MODULE.
+
+A process of its own, since Xlib ends the one that it cannot serve, and a driver may crash it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import sys
+
+VIDEO = 0x20
+HIDDEN = 0x8
+SIZE_PX = 64
+FROM_LEFT_PX = 0
+
+
+def opened(module: str) -> dict[str, str]:
+    """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's."""
+    try:
+        sdl = ctypes.CDLL(module)  # with the libraries that it needs
+    except OSError as error:
+        return {"load": str(error)}
+    sdl.SDL_GetError.restype = ctypes.c_char_p
+    sdl.SDL_GetCurrentVideoDriver.restype = ctypes.c_char_p
+    sdl.SDL_CreateWindow.restype = ctypes.c_void_p
+    sdl.SDL_GetWindowSurface.restype = ctypes.c_void_p
+    sdl.SDL_GetWindowSurface.argtypes = [ctypes.c_void_p]
+    if sdl.SDL_InitSubSystem(VIDEO) != 0:
+        return {"error": sdl.SDL_GetError().decode(errors="replace")}
+    driver = sdl.SDL_GetCurrentVideoDriver().decode(errors="replace")
+    window = sdl.SDL_CreateWindow(b"Pogosim", FROM_LEFT_PX, FROM_LEFT_PX, SIZE_PX, SIZE_PX, HIDDEN)
+    # X draws without OpenGL, so a window is enough there.
+    if not window or (driver == "wayland" and not sdl.SDL_GetWindowSurface(window)):
+        return {"driver": driver, "error": sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"}
+    return {"driver": driver}
+
+
+if __name__ == "__main__":
+    print(json.dumps(opened(sys.argv[1])))
