@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from display import Display, forwarded, open_display
 from pogosim.command.display_check import told
-from pogosim.displays.opening import Opening, try_window
+from pogosim.displays.opening import Opening, try_module, try_window
 from pogosim.displays.seen import Seen
 from pogosim.displays.surroundings import Surroundings
 from pogosim.displays.symptoms import HINTS, REASONS, Symptom, hints_of, reason_of
@@ -278,6 +278,12 @@ def test_display_that_has_ended() -> None:
     assert found is not None
     assert found.section in ("nothing-answers", "in-a-container"), "this test may run in a container"
     assert name in found.found
+
+
+def test_module_that_cannot_be_loaded(tmp_path: Path) -> None:
+    assert try_module(module(), os.environ) == Opening()
+    assert "no such file" in try_module(tmp_path / "none.so", os.environ).load_error.lower()
+    assert not try_window(module(), {**os.environ, "SDL_VIDEODRIVER": "dummy"}).is_open
 
 
 def test_display_without_an_answer() -> None:

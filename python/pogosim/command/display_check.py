@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 
 from pogosim.command.finding import Finding
-from pogosim.displays.opening import try_window
+from pogosim.displays.opening import try_module, try_window
 from pogosim.displays.seen import Seen
 from pogosim.displays.surroundings import Surroundings
 from pogosim.displays.symptoms import hints_of, reason_of
@@ -21,11 +21,11 @@ def check_window(found: Installation) -> list[Finding]:
     if not modules:
         return [Finding("Window", False, f"there is no libpogosim_view in {found.library}", "install Pogosim again")]
     here = Surroundings()
-    is_named = any(here.value(name) for name in NAMES) or platform.system() == "Darwin"
-    # Without a display, too: what the module needs may be missing.
-    opening = try_window(modules[0], here.environment)
-    is_tried = is_named or bool(opening.load_error)
-    return told(Seen(here, opening if is_tried else None, answer_of(here) if here.value("DISPLAY") else None))
+    server = answer_of(here) if here.value("DISPLAY") else None
+    if any(here.value(name) for name in NAMES) or platform.system() == "Darwin":
+        return told(Seen(here, try_window(modules[0], here.environment), server))
+    loaded = try_module(modules[0], here.environment)  # what it needs may be missing, too
+    return told(Seen(here, loaded if loaded.load_error else None, server))
 
 
 def told(seen: Seen) -> list[Finding]:

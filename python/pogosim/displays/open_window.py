@@ -1,4 +1,4 @@
-"""Opens a hidden window, as a run does, and prints what came of it: python3 open_window.py MODULE.
+"""Opens a hidden window, as a run does, and prints what came of it: python3 open_window.py MODULE [--load-only].
 
 A process of its own, since Xlib ends the one that it cannot serve, and a driver may crash it.
 """
@@ -12,15 +12,19 @@ import sys
 VIDEO = 0x20
 HIDDEN = 0x8
 SIZE_PX = 64
-FROM_LEFT_PX = 0
+PLACE_PX = 0
+# What SDL takes when it reaches no display. A console would lose its text to a window, so none is opened there.
+NOWHERE = ("offscreen", "dummy", "evdev", "KMSDRM", "directfb")
 
 
-def opened(module: str) -> dict[str, str]:
+def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
     """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's."""
     try:
         sdl = ctypes.CDLL(module)  # with the libraries that it needs
     except OSError as error:
         return {"load": str(error)}
+    if is_loaded_only:
+        return {}
     sdl.SDL_GetError.restype = ctypes.c_char_p
     sdl.SDL_GetCurrentVideoDriver.restype = ctypes.c_char_p
     sdl.SDL_CreateWindow.restype = ctypes.c_void_p
@@ -29,7 +33,9 @@ def opened(module: str) -> dict[str, str]:
     if sdl.SDL_InitSubSystem(VIDEO) != 0:
         return {"error": sdl.SDL_GetError().decode(errors="replace")}
     driver = sdl.SDL_GetCurrentVideoDriver().decode(errors="replace")
-    window = sdl.SDL_CreateWindow(b"Pogosim", FROM_LEFT_PX, FROM_LEFT_PX, SIZE_PX, SIZE_PX, HIDDEN)
+    if driver in NOWHERE:
+        return {"driver": driver}
+    window = sdl.SDL_CreateWindow(b"Pogosim", PLACE_PX, PLACE_PX, SIZE_PX, SIZE_PX, HIDDEN)
     # X draws without OpenGL, so a window is enough there.
     if not window or (driver == "wayland" and not sdl.SDL_GetWindowSurface(window)):
         return {"driver": driver, "error": sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"}
@@ -37,4 +43,4 @@ def opened(module: str) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(opened(sys.argv[1])))
+    print(json.dumps(opened(sys.argv[1], "--load-only" in sys.argv[2:])))

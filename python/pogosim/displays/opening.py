@@ -6,14 +6,14 @@ import json
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pogosim.displays.open_window import NOWHERE
+
 SCRIPT = Path(__file__).with_name("open_window.py")
 LONGEST_S = 20.0  # that a run waits for its window
-# What SDL takes when it reaches no display: nothing is to be seen there.
-NOWHERE = ("offscreen", "dummy", "evdev", "KMSDRM", "directfb")
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,20 @@ class Opening:
 
 
 def try_window(module: Path, environment: Mapping[str, str], longest_s: float = LONGEST_S) -> Opening:
-    """Open a window and close it again; it is not to be seen."""
+    """Open a window, which is hidden, and close it again."""
+    return tried([str(module)], environment, longest_s)
+
+
+def try_module(module: Path, environment: Mapping[str, str]) -> Opening:
+    """Load the module of the window only, where no display is named."""
+    return tried([str(module), "--load-only"], environment, LONGEST_S)
+
+
+def tried(arguments: Sequence[str], environment: Mapping[str, str], longest_s: float) -> Opening:
+    """Run open_window.py."""
     try:
         done = subprocess.run(
-            [sys.executable, SCRIPT, module],
+            [sys.executable, SCRIPT, *arguments],
             env=dict(environment),
             capture_output=True,
             text=True,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pogosim.displays.opening import NOWHERE
+from pogosim.displays.open_window import NOWHERE
 from pogosim.displays.seen import Seen, Told
 from pogosim.displays.x_server import Answer, numbered
 
