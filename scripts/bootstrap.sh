@@ -151,6 +151,11 @@ make_venv() {
     if [ "$1" = test ]; then
         extra="[test]"
     fi
+    # The name that this package had before; pip would leave it beside the new one.
+    if .venv/bin/python -m pip show --quiet pogosim 2>/dev/null; then
+        .venv/bin/python -m pip uninstall --quiet --yes pogosim ||
+            fail "pip uninstall pogosim" "See pip's message above; remove .venv and try again"
+    fi
     say "Installing Python packages in .venv"
     # Python compiles modules when it imports them; compiling all of them takes half a minute and 100 MB.
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input --no-compile \

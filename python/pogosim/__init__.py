@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import pogobot_simulator
 
 if TYPE_CHECKING:
     from pogosim.simulation import (
@@ -19,6 +23,12 @@ if TYPE_CHECKING:
 IS_INLINE = os.environ.get("MPLBACKEND", "").startswith("module://matplotlib_inline")
 if IS_INLINE and importlib.util.find_spec("matplotlib_inline") is None:
     os.environ["MPLBACKEND"] = "agg"
+
+_FOLDER = Path(__file__).resolve().parents[1]
+if _problem := pogobot_simulator.mixed(_FOLDER):
+    raise ImportError(_problem)
+if _problem := pogobot_simulator.beside(_FOLDER):
+    warnings.warn_explicit(_problem, UserWarning, str(_FOLDER / "pogosim"), 1)
 
 __version__ = "0.11.0"
 __all__ = ["ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 import sys
 
-from pogosim.command.main import pogosim_command
+from pogobot_simulator import pogosim
 
-sys.exit(pogosim_command())
+sys.exit(pogosim())

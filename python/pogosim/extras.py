@@ -1,6 +1,6 @@
 """Optional packages of this Pogosim, and how to install them.
 
-PyPI has another program by the name of pogosim, which pip would fetch by that name. So packages are installed by their
+PyPI has another program by the name of pogosim, and not this one, pogobot-simulator. So packages are installed by their
 own names; see docs/other_pogosim.md.
 """
 

@@ -101,6 +101,6 @@ def find_installation() -> Installation:
             raise InstallationError(f"the simulator in {tree} is not built: run ./build.sh there")
         raise InstallationError(
             f"the package in {PACKAGE} has no simulator in it: install its wheel again, or build a checkout "
-            "(not from PyPI, which has another program of that name)"
+            "(pogobot-simulator; the pogosim of PyPI is another program)"
         )
     return found

@@ -15,7 +15,7 @@ from pogosim.command import doctor
 from pogosim.extras import EXTRAS, installing
 from running import ROOT
 
-INSTALLS = re.compile(r"pip3? install(?:\s+-\S+)*\s+['\"]?pogosim(?![-\w]*\.whl|-VERSION)")
+INSTALLS = re.compile(r"pip3? install(?:\s+-\S+)*\s+['\"]?pogosim(?!\w)")
 
 
 def texts() -> list[Path]:
@@ -31,7 +31,7 @@ def test_no_page_or_message_installs_the_program_of_that_name_on_pypi() -> None:
         f"{path.relative_to(ROOT)}: {match[0]}"
         for path in texts()
         for match in INSTALLS.finditer(path.read_text(encoding="utf-8", errors="replace"))
-        if path.name not in ("CHANGELOG.md", "bare_machine.sh")  # what was, and pip with a folder of wheels alone
+        if path.name != "CHANGELOG.md"  # what was
     ]
     assert found == []
 
@@ -44,7 +44,7 @@ def test_plain_names_are_found(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["pip install ./pogosim-VERSION-py3-none-PLATFORM.whl", "pip install .", "pip install ~/pogosim"]
+    "text", ["pip install ./pogobot_simulator-VERSION-py3-none-PLATFORM.whl", "pip install .", "pip install ~/pogosim"]
 )
 def test_wheels_and_checkouts_are_not_plain_names(text: str) -> None:
     assert not INSTALLS.search(text)
@@ -58,7 +58,7 @@ def split(package: str) -> tuple[str, SpecifierSet]:
 
 def test_optional_packages_are_those_of_the_project() -> None:
     project: dict[str, set[tuple[str, SpecifierSet]]] = {}
-    for text in metadata.requires("pogosim") or []:
+    for text in metadata.requires("pogobot-simulator") or []:
         package, _, extra = text.partition("; extra == ")
         project.setdefault(extra.strip("'\""), set()).add(split(package))
     assert {name: project[name] for name in EXTRAS} == {name: set(map(split, EXTRAS[name])) for name in EXTRAS}

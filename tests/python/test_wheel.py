@@ -87,7 +87,7 @@ def needed(file: Path) -> dict[str, Path]:
 def test_it_loads_nothing_else_of_the_system(packages: Path, project: Path) -> None:
     binaries = [*packages.glob("pogosim/simulator/lib/*.so"), *packages.glob("pogosim/simulator/bin/*")]
     assert len(binaries) == 6
-    for file in [*binaries, *packages.glob("pogosim.libs/*"), project / "first"]:
+    for file in [*binaries, *packages.glob("pogobot_simulator.libs/*"), project / "first"]:
         for name, path in needed(file).items():
             is_of_a_package = packages in path.resolve().parents or "site-packages" in str(path)
             assert is_of_a_package or name in OF_THE_SYSTEM | OF_OLDER_SYSTEMS, f"{file.name} loads {path}"
@@ -110,11 +110,11 @@ def test_metadata_require_the_arrow_it_was_built_with(wheel: Path) -> None:
     required = metadata.get_all("Requires-Dist", [])
     assert f"pyarrow=={'.'.join(pyarrow.__version__.split('.')[:2])}.*" in required
     assert any(requirement.startswith("pysdl2-dll") for requirement in required)
-    assert re.fullmatch(rf"pogosim-[\d.]+-py3-none-manylinux_[\w.]+_{platform.machine()}\.whl", wheel.name)
+    assert re.fullmatch(rf"pogobot_simulator-[\d.]+-py3-none-manylinux_[\w.]+_{platform.machine()}\.whl", wheel.name)
 
 
 def test_no_folder_of_the_machine_that_built_it_is_left_in_it(packages: Path) -> None:
-    for file in packages.glob("pogosim*/**/*"):
+    for file in packages.glob("pogo*/**/*"):
         if file.is_file() and file.suffix != ".pyc":
             assert os.fsencode(ROOT) not in file.read_bytes(), file
 

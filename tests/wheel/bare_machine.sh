@@ -2,7 +2,7 @@
 # Tries a wheel on a bare machine: a fresh Debian in a folder, with nothing but Python, a C compiler and make, as a user who is
 # not root and has no network. Needs root and debootstrap; takes about three minutes; leaves nothing behind.
 #
-#   ./scripts/make_wheel.sh && sudo tests/wheel/bare_machine.sh dist/pogosim-*.whl
+#   ./scripts/make_wheel.sh && sudo tests/wheel/bare_machine.sh dist/pogobot_simulator-*.whl
 set -euo pipefail
 
 if [ $# -ne 1 ] || [ ! -f "$1" ] || [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
@@ -30,7 +30,7 @@ set -eux
 cd ~
 python3 -m venv env
 . env/bin/activate
-pip install --quiet --disable-pip-version-check --no-index --find-links /wheels pogosim
+pip install --quiet --disable-pip-version-check --no-index --find-links /wheels pogobot-simulator
 pogosim new first
 cd first
 make sim

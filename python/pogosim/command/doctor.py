@@ -13,6 +13,8 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from pogobot_simulator import MEND, OTHER, metadata_of
+
 import pogosim
 from pogosim.command.display_check import check_window
 from pogosim.command.finding import Finding
@@ -54,12 +56,18 @@ def last_line(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def others_of_that_name() -> list[str]:
-    """Return where other programs by the name of pogosim are: packages that Python could find, and the command."""
+    """Return where other programs by the name of pogosim are: packages that Python or pip could find, and the command.
+
+    One of them may be this program, installed by the name that it had before.
+    """
     places = [Path(folder or ".", "pogosim") for folder in sys.path]
     others = [str(place) for place in places if is_package(place) and not (place / "simulation").is_dir()]
-    command = shutil.which("pogosim")
-    if command and b"pogosim.command.main" not in Path(command).read_bytes():
-        others.append(command)
+    folders = [Path(folder or ".") for folder in sys.path]
+    others += [str(found) for folder in folders if folder.is_dir() for found in metadata_of(OTHER, folder)]
+    for name in ("pogosim", "pogobatch"):
+        command = shutil.which(name)
+        if command and b"pogobot_simulator" not in Path(command).read_bytes():
+            others.append(command)
     return list(dict.fromkeys(others))
 
 
@@ -72,7 +80,7 @@ def check_name(found: Installation) -> Finding:  # noqa: ARG001
     """Look for the program on PyPI that has the same name."""
     others = others_of_that_name()
     if others:
-        advice = "see docs/other_pogosim.md: pip uninstall pogosim, then install this one again"
+        advice = f"see docs/other_pogosim.md: {MEND}"
         return Finding("Name", False, f"another program named pogosim is installed: {', '.join(others)}", advice)
     return Finding("Name", True, f"this Pogosim is the only one, in {PACKAGE}")
 
@@ -109,7 +117,11 @@ def check_programs(found: Installation, purpose: str, suffix: str, advice: str) 
             ["./main", "-c", "test.yaml", "-g", "-q"], cwd=folder, capture_output=True, text=True, check=False
         )
     if done.returncode != 0:
-        reinstall = "install pyarrow in the version that pip show pogosim requires" if "libarrow" in done.stderr else ""
+        reinstall = (
+            "install pyarrow in the version that pip show pogobot-simulator requires"
+            if "libarrow" in done.stderr
+            else ""
+        )
         return Finding(purpose, False, f"a test program does not run: {last_line(done)}", reinstall)
     return Finding(purpose, True, f"compiled and ran a test program with {first_line(*command, '--version')}")
 
