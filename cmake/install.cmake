@@ -39,6 +39,7 @@ install(TARGETS pogosim pogosim_part_of_programs pogosim_library EXPORT pogosimT
     LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
     RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(TARGETS pogosim_window ${tables} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")  # libpogosim looks for it beside itself
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${commit_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
     FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/arenas" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"

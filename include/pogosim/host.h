@@ -65,6 +65,15 @@ char const* pogosim_host_error(void);
 /// POGOSIM_VERSION_STRING of the simulator.
 char const* pogosim_host_version(void);
 
+/// What this library was built of and with, a line each: "name: value". The names are
+///  - commit: of the sources, as `git describe --always --tags --dirty` says; "unknown" if nothing told the build, or
+///    libpogosim.commit is not beside the library,
+///  - compiler: that of C++, with its version,
+///  - engines: the values of `physics_engine`, separated by ", "; that of another library with its version,
+///  - Arrow: the version of Apache Arrow that its module of tables was built with.
+/// Later versions may have further lines. Programs print them when they are called with --version.
+char const* pogosim_build_info(void);
+
 /// Builds the world and runs the program up to time 0: main(), callbacks, user_init. `run` is NULL on failure.
 int pogosim_run_open(struct pogosim_run_options const* options, pogosim_run** run);
 

@@ -30,6 +30,7 @@ if _problem := pogobot_simulator.mixed(_FOLDER):
 if _problem := pogobot_simulator.beside(_FOLDER):
     warnings.warn_explicit(_problem, UserWarning, str(_FOLDER / "pogosim"), 1)
 
+# A copy of that in include/pogosim/version.h: no build succeeds with another one, see cmake/version.cmake.
 __version__ = "0.11.0"
 __all__ = ["ConfigurationError", "ProgramFailedError", "Simulation", "SimulationError", "VectorSimulation"]
 

@@ -9,6 +9,7 @@
 
 #include "base/escaped.hpp"
 #include "base/nearest_name.hpp"
+#include "pogosim/host.h"
 #include "pogosim/version.h"
 #include "process/crash_handler.hpp"
 
@@ -40,6 +41,13 @@ std::string is_port(std::string const& text) {
 
 std::string is_not_empty(std::string const& text) {
     return text.empty() ? "expected the name of a file, found ''" : "";
+}
+
+/// The version, then the lines of pogosim_build_info(), without the end of the last line.
+std::string version_text() {
+    std::string text = std::string("pogosim " POGOSIM_VERSION_STRING "\n") + pogosim_build_info();
+    text.pop_back();
+    return text;
 }
 
 std::string is_picture(std::string const& text) {
@@ -142,7 +150,8 @@ void declare_options(CLI::App& app, CommandLine& options) {
         ->type_name("FILE")
         ->check(is_picture)
         ->needs(check);
-    app.set_version_flag("-V,--version", "pogosim " POGOSIM_VERSION_STRING, "print the version and exit");
+    app.set_version_flag("-V,--version", version_text,
+                         "print the version of the library, its commit and what it was built with, and exit");
     app.set_help_flag("-h,--help", "print this help and exit");
 }
 

@@ -8,7 +8,6 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 
-import pogosim
 from pogosim.arguments import shown
 from pogosim.command.parser import complain, warn
 from pogosim.errors import ToolError
@@ -75,7 +74,7 @@ def usage() -> list[str]:
         "",
         "Options:",
         "  -h, --help     print this help; pogosim COMMAND --help: that of a command",
-        "  -V, --version  print the version",
+        "  -V, --version  print the version, and what the library was built of and with; --json: for programs",
     ]
 
 
@@ -152,8 +151,9 @@ def run(name: str, arguments: Sequence[str]) -> int:
         say(*usage())
         return 0
     if name in ("-V", "--version"):
-        say(f"pogosim {pogosim.__version__}")
-        return 0
+        from pogosim.command import version
+
+        return version.main(arguments)
     if not name:
         say_error(*usage())
         return WRONG_USAGE
