@@ -342,6 +342,7 @@ int run_as_told(pogosim_program const& program, int argc, char** argv) {
     ExitCode& code = ended.code;
     try {
         ignore_broken_outputs();
+        require_this_interface(program, process_name());
         ended = parsed.options.check_config ? check(program, parsed.options)
                                             : simulate(program, parsed.options, folder, take_restart());
         check_logs();
@@ -395,7 +396,7 @@ int pogosim_run_program(pogosim_program const* program, int argc, char** argv) {
         end_forked_child(0);  // forked by a constructor; the run belongs to the parent
     }
     enter_stage(RunStage::preparing);
-    if (is_run_server()) {
+    if (is_run_server() && has_this_interface(*program)) {
         return serve_runs(linked_program(*program, process_name()), [&](std::vector<std::string> arguments) {
             std::vector<char*> words{argv[0]};
             std::ranges::transform(arguments, std::back_inserter(words), [](auto& word) { return word.data(); });

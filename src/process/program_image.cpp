@@ -230,6 +230,17 @@ Copy load_copy(std::filesystem::path const& file) {
 
 }  // namespace
 
+bool has_this_interface(pogosim_program const& program) {
+    return program.interface_version / kVersionsPerMinor == POGOSIM_VERSION_COMPILED / kVersionsPerMinor;
+}
+
+void require_this_interface(pogosim_program const& program, std::filesystem::path const& file) {
+    if (!has_this_interface(program)) {
+        fail(file, fmt::format("was built with Pogosim {}, and this is {}: build it again",
+                               version_text(program.interface_version), version_text(POGOSIM_VERSION_COMPILED)));
+    }
+}
+
 ProgramImage linked_program(pogosim_program const& program, std::string name) {
     ProgramImage image;
     image.name = std::move(name);
@@ -286,11 +297,7 @@ ProgramImage load_program(std::filesystem::path const& file) {
     if (dlsym(library.get(), "pogosim_before_constructors") != reinterpret_cast<void*>(&pogosim_before_constructors)) {
         fail(file, "was built with another Pogosim than the one that is in use: build it again with this one");
     }
-    std::uint32_t const version = program->interface_version;
-    if (version / kVersionsPerMinor != POGOSIM_VERSION_COMPILED / kVersionsPerMinor) {
-        fail(file, fmt::format("was built with Pogosim {}, and this is {}: build it again", version_text(version),
-                               version_text(POGOSIM_VERSION_COMPILED)));
-    }
+    require_this_interface(*program, file);
     ProgramImage image = linked_program(*program, file.string());
     forget_constructors_of(*program);
     image.loaded = library;

@@ -50,7 +50,14 @@ inline bool is_in_any(std::span<std::span<std::byte> const> pieces, void const* 
         pieces, [place](auto const& piece) { return place >= piece.data() && place < piece.data() + piece.size(); });
 }
 
-/// A program that is a part of this executable.
+/// Whether a program was built with this minor version; the interface of another one may be another. Executables must
+/// be asked, too: where the name of their library has no version, as in the Python package, it can be exchanged.
+bool has_this_interface(pogosim_program const& program);
+
+/// Throws ConfigError for a program of another minor version. `file`: what the message calls it.
+void require_this_interface(pogosim_program const& program, std::filesystem::path const& file);
+
+/// A program that is a part of this executable, and was built with this minor version.
 ProgramImage linked_program(pogosim_program const& program, std::string name);
 
 /// Loads a program from a shared object, such as `make sim` makes beside an executable. Each call loads a copy with

@@ -18,7 +18,7 @@ import pytest
 from pogosim.command.version import build_info, library_file
 from pogosim.installation import installation_in
 from project import CLEAN
-from running import ROOT, Run, build_folder, ran
+from running import ROOT, Run, build_folder, pkg_config, ran, write_scene
 
 HEADER = ROOT / "include" / "pogosim" / "version.h"
 COPY = ROOT / "python" / "pogosim" / "__init__.py"
@@ -313,3 +313,64 @@ def test_source_distribution_has_its_commit(sources: Path, tmp_path: Path) -> No
     name = f"pogobot_simulator-{version_of(HEADER)}"
     subprocess.run(["tar", "-xzf", tmp_path / f"{name}.tar.gz", "-C", tmp_path], check=True)
     assert recorded(tmp_path / name, tmp_path / "commit") == commit
+
+
+# ---- What a minor version may break
+
+
+def program_of_minor_version(folder: Path, minor: int, *flags: str) -> Path:
+    """Compile a program, and what is linked into each, for another minor version; returns it."""
+    (include := folder / "include" / "pogosim").mkdir(parents=True)
+    own = re.search(r"^#define POGOSIM_VERSION_MINOR \d+$", HEADER.read_text(), re.MULTILINE)
+    assert own
+    (include / "version.h").write_text(HEADER.read_text().replace(own[0], f"#define POGOSIM_VERSION_MINOR {minor}"))
+    sources = [ROOT / "src" / "program" / name for name in ("program.c", "main.c")]
+    words = ["-I", str(include.parent), "-I", str(ROOT / "include"), *flags, str(ROOT / "examples/helloworld/main.c")]
+    program = folder / "program"
+    compiler = ["cc", "-std=gnu11", *words, *map(str, sources), "-o", str(program), *pkg_config("--libs")]
+    subprocess.run(compiler, check=True)
+    return program
+
+
+def test_program_of_another_minor_version_is_refused_and_still_says_what_it_runs_with(tmp_path: Path) -> None:
+    minor = int(version_of(HEADER).split(".")[1])
+    program = program_of_minor_version(tmp_path, minor + 1)
+    configuration = write_scene(tmp_path, {})
+    for options in ([], ["--check-config"]):
+        result = ran(tmp_path, program, "-c", configuration.name, "-g", "-q", *options)
+        assert (result.code, result.output) == (2, "")
+        (line,) = result.errors.splitlines()
+        versions = rf"was built with Pogosim \d+\.{minor + 1}\.\d+, and this is {pogosim.__version__}"
+        assert re.fullmatch(rf".*'{program}' {versions}: build it again", line)
+    assert ran(tmp_path, program, "--version").output.startswith(f"pogosim v{pogosim.__version__}\n")
+    batch = command(tmp_path, "batch", "-c", configuration.name, "-S", str(program), "-r", "2", "-o", "results")
+    assert batch.code != 0
+    assert "build it again" in batch.errors
+
+
+def test_program_of_this_minor_version_runs(tmp_path: Path) -> None:
+    program = program_of_minor_version(tmp_path, int(version_of(HEADER).split(".")[1]))
+    assert ran(tmp_path, program, "-c", write_scene(tmp_path, {}).name, "-g", "-q").code == 0
+
+
+def test_shared_object_of_another_minor_version_is_refused(tmp_path: Path) -> None:
+    program = program_of_minor_version(tmp_path, int(version_of(HEADER).split(".")[1]) - 1, "-shared", "-fPIC")
+    with pytest.raises(pogosim.ConfigurationError, match=r"was built with Pogosim .*: build it again"):
+        pogosim.Simulation(program, write_scene(tmp_path, {}))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems name libraries in another way")
+def test_name_of_the_library_is_that_of_the_minor_version() -> None:
+    found = installation_in(build_folder())
+    assert found
+    read = subprocess.run(["readelf", "-d", library_file(found)], capture_output=True, text=True, check=True).stdout
+    assert f"soname: [libpogosim.so.{version_of(HEADER).rpartition('.')[0]}]" in read
+
+
+def test_page_names_each_line_of_the_command(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "versions.md").read_text()
+    rows = re.findall(
+        r"^\| `([\w ]+)` \|", page.partition("## Which one is it?")[2].partition("\n## ")[0], re.MULTILINE
+    )
+    lines = command(tmp_path, "--version").output.splitlines()[1:]
+    assert rows == ["pogosim", *(line.split(": ")[0] for line in lines), "checkout"]
