@@ -30,6 +30,7 @@ try:
     import functions
     import gallery
     import lamps
+    import libraries
     import linked
     import live
     import loads
@@ -71,6 +72,7 @@ SCRIPTS: dict[str, ModuleType] = {
         functions,
         gallery,
         lamps,
+        libraries,
         linked,
         live,
         loads,

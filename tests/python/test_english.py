@@ -5,13 +5,13 @@ from __future__ import annotations
 import ast
 import io
 import re
-import subprocess
 import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from running import ROOT
+from tracked import tracked
 
 # What a sentence must not have, and what to write instead.
 BANS = [
@@ -50,20 +50,6 @@ TOKEN = re.compile(
 )
 
 Passage = tuple[int, str]  # line, and the text of a comment, a docstring, a message or a paragraph
-
-
-def tracked(*endings: str) -> list[Path]:
-    """Return the project's files with these endings."""
-    names = subprocess.run(
-        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
-    ).stdout
-    files = [ROOT / name for name in names.splitlines()] or list(ROOT.rglob("*"))  # an archive has no .git
-    skipped = {"build", ".venv", ".git"}
-    return [
-        file
-        for file in files
-        if file.suffix in endings and file.is_file() and not skipped & set(file.relative_to(ROOT).parts)
-    ]
 
 
 def joined(lines: list[Passage]) -> Iterator[Passage]:
