@@ -38,8 +38,10 @@ PAGES = [
     ROOT / "CONTRIBUTING.md",
     ROOT / "bench" / "README.md",
     ROOT / "template_prj" / "README.md",
+    ROOT / "docs" / "decisions" / "index.md",
     *sorted((ROOT / "docs").glob("*.md")),
 ]
+DECISIONS = sorted({*(ROOT / "docs" / "decisions").glob("*.md")} - {ROOT / "docs" / "decisions" / "index.md"})
 # Pages whose commands are run word for word, in a tree with the program of the README.
 PAGES_WITH_COMMANDS = [
     README,
@@ -308,6 +310,17 @@ def test_readme_has_a_row_for_each_page() -> None:
     assert re.findall(r"^\*\*(.*)\*\*$", section, re.MULTILINE) == ["To learn", "To look up", "To change"]
 
 
+def test_decisions_are_listed_and_each_has_its_reasons() -> None:
+    index = ROOT / "docs" / "decisions" / "index.md"
+    listed = re.findall(r"^- \[(.*)\]\((\w+\.md)\): .+$", index.read_text(), re.MULTILINE)
+    assert sorted(name for _, name in listed) == [page.name for page in DECISIONS]
+    for title, name in listed:
+        text = (index.parent / name).read_text()
+        assert text.startswith(f"# {title}\n")
+        parts = re.findall(r"^\*\*(.*?)\.\*\* \S", text, re.MULTILINE)
+        assert parts == ["Context", "Decision", "Reasons", "What it costs", "What would change our mind"], name
+
+
 def declared_functions() -> set[str]:
     """Return the names of functions and macros with arguments in the headers for programs, read without doxygen."""
     found: set[str] = set()
@@ -403,7 +416,7 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", [*PAGES, *DECISIONS], ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
     targets = [target for target, _ in LINK.findall(page.read_text()) if "://" not in target]
     missing = [target for target in targets if not (page.parent / target).exists()]
