@@ -4,7 +4,7 @@ $env:WSL_UTF8 = "1"
 
 # In-Wsl COMMAND: a command line of bash there, as root; ends this script if it fails.
 function In-Wsl([string] $command) {
-    wsl --distribution Debian --user root -- bash -ec $command
+    wsl --distribution Debian --user root --exec bash -ec $command
     if ($LASTEXITCODE -ne 0) { exit $LASTEXITCODE }
 }
 

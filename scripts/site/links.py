@@ -18,6 +18,7 @@ OUTSIDE = {
 }
 SOURCES = "source/"  # where source files that pages link to are shown
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".h": "c", ".c": "c", ".py": "python", ".js": "js", ".yaml": "yaml"} | {
+    ".yml": "yaml",
     ".json": "json",
     ".toml": "toml",
     ".cmake": "cmake",

@@ -91,6 +91,14 @@ def test_what_makes_workflows_unsafe_is_found(line: str, other: str, tmp_path: P
     assert zizmor(tmp_path / ".github").returncode != 0
 
 
+def test_actionlint_of_the_weekly_job_is_that_of_contributors() -> None:
+    named = [
+        re.findall(r"go run (\S+actionlint@v[\d.]+)", path.read_text())
+        for path in (GITHUB / "workflows" / "weekly.yml", ROOT / "CONTRIBUTING.md")
+    ]
+    assert named[0] == named[1] != []
+
+
 def texts(node: Any) -> Iterator[str]:
     """Yield all texts of a YAML file."""
     if isinstance(node, dict):
