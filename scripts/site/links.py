@@ -36,7 +36,8 @@ def page_of(path: str) -> str:
         return OUTSIDE[path]
     if path.startswith("docs/") and Path(path).suffix in {".md", ".png"}:
         return path.removeprefix("docs/")
-    return f"{SOURCES}{path}.md"
+    visible = "/".join(part.lstrip(".") for part in path.split("/"))  # MkDocs and pages of forges leave out hidden files
+    return f"{SOURCES}{visible}.md"
 
 
 def for_site(markdown: str, path: str, note: Callable[[str], None]) -> str:
