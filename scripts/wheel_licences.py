@@ -42,6 +42,11 @@ LIBRARIES = {
 }
 
 
+def libraries_for(target: str) -> set[str]:
+    """Return the libraries in a wheel that scripts/make_wheel.py makes for a target, such as "macos-arm64"."""
+    return set(LIBRARIES) - ({"elfutils"} if target.startswith("macos") else set())
+
+
 def expression_for(libraries: Iterable[str]) -> str:
     """Return the SPDX expression of a wheel with these libraries: our licence and each of theirs, once."""
     licences = {LIBRARIES[name].licence for name in libraries} - {OWN}

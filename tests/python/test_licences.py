@@ -15,7 +15,7 @@ from tracked import tracked
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from wheel_licences import LIBRARIES, NOTICE, add_licences, expression_for, licences_for
+from wheel_licences import LIBRARIES, NOTICE, add_licences, expression_for, libraries_for, licences_for
 
 
 @pytest.fixture
@@ -81,6 +81,12 @@ def test_all_libraries_that_are_fetched_have_a_known_licence() -> None:
     from dependencies import SOURCES
 
     assert set(SOURCES) - {"sdl"} == set(LIBRARIES)  # SDL's own package brings its licence
+
+
+def test_wheels_for_macos_are_without_elfutils() -> None:
+    assert libraries_for("linux-aarch64") == set(LIBRARIES)
+    assert libraries_for("macos-arm64") == set(LIBRARIES) - {"elfutils"}
+    assert "LGPL" not in expression_for(libraries_for("macos-arm64"))
 
 
 def test_notice_names_versions_and_where_the_source_of_elfutils_is(sources: Path) -> None:
