@@ -29,8 +29,6 @@ done
 
 . scripts/bootstrap.sh
 bootstrap "$needs"
-# Several builds of the same sources, here and in other clones, share what ccache has kept.
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 # Modules are compiled once for all the processes that tests start, also where the environment keeps Python from it.
 unset PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX=$PWD/build/pycache

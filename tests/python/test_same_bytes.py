@@ -29,9 +29,7 @@ def test_worlds_develop_to_the_same_bits(name: str) -> None:
     for tool in (*compiler, *runner):
         assert shutil.which(tool), f"{tool} is missing: scripts/bootstrap.sh installs it"
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-    if shutil.which("ccache"):
-        generator.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
-    # Within the tree, where ccache finds what was compiled before, here or in another clone: CCACHE_BASEDIR.
+    # Within the tree, where ccache finds what was compiled before, here or in another clone: cmake/ccache.cmake.
     folder = ROOT / "build" / "same_bytes" / name.replace(" ", "_")
     configure = ["cmake", "--fresh", "-S", str(SOURCES), "-B", str(folder), *generator]
     configure += [f"-DCMAKE_CXX_COMPILER={compiler[0]}", f"-DCMAKE_CXX_FLAGS={flags}"]
