@@ -13,12 +13,13 @@ apt_packages="build-essential cmake ninja-build ccache pkg-config
     libsdl2-dev libimgui-dev libpng-dev fonts-dejavu-core
     python3 python3-venv ca-certificates"
 # libclang-rt-dev: the sanitizers of clang. xvfb, xdotool, x11-apps: a display to test the window on. ffmpeg: films.
-# chromium, firefox-esr: browsers to test pages in; on macOS, where they are not installed, those tests are skipped.
 # gdb, valgrind: what docs/debugging.md shows. gdb-multiarch: gdb for robots that run firmware. slurm*, munge: a cluster of
 # one node to test batches on, see tests/slurm.
-apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg chromium firefox-esr
+apt_test_packages="clang libclang-rt-dev doxygen xvfb xdotool x11-apps ffmpeg
     gcc-riscv64-unknown-elf binutils-riscv64-unknown-elf picolibc-riscv64-unknown-elf
     g++-aarch64-linux-gnu qemu-user gdb gdb-multiarch valgrind slurmctld slurmd slurm-client munge"
+# Browsers to test pages in. Ubuntu has them as snaps only, and macOS installs none: those tests are skipped there.
+apt_browsers="chromium firefox-esr"
 apt_tidy_packages="clang-tidy"
 # For wheels for other machines: what fetches and builds their libraries.
 apt_wheel_packages="dpkg-dev debian-archive-keyring m4 g++-aarch64-linux-gnu"
@@ -55,6 +56,14 @@ missing_apt_packages() {
             *" $package:installed "*) ;;
             *) printf '%s ' "$package" ;;
         esac
+    done
+}
+
+# offered_by_apt PACKAGES: those that can be installed.
+offered_by_apt() {
+    local package
+    for package in $1; do
+        ! LC_ALL=C apt-cache policy "$package" 2>/dev/null | grep -q 'Candidate: [^(]' || printf '%s ' "$package"
     done
 }
 
@@ -103,6 +112,7 @@ install_packages() {
         return
     elif command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then
         install_with_apt "$apt"
+        [ "$1" = build ] || install_with_apt "$(offered_by_apt "$(missing_apt_packages "$apt_browsers")")"
     elif command -v brew >/dev/null; then
         install_with_brew "$brew"
     else

@@ -7,6 +7,7 @@ import subprocess
 import sysconfig
 from pathlib import Path
 
+import pytest
 from running import ROOT
 
 PACKAGES = Path(sysconfig.get_path("platlib"))
@@ -38,3 +39,24 @@ def test_environment_of_another_folder_that_is_linked_is_left_alone(tmp_path: Pa
     assert done.returncode == 1
     assert f".venv is a link to {other}, which was made for another folder. Remove the link" in done.stderr
     assert [path.name for path in other.iterdir()] == ["kept"]
+
+
+@pytest.mark.parametrize("offered", [True, False], ids=["Debian", "Ubuntu"])
+def test_browsers_are_installed_where_apt_offers_them(offered: bool, tmp_path: Path) -> None:
+    candidate = "1.0" if offered else "(none)"
+    stubs = {
+        "apt-cache": f"echo '  Candidate: {candidate}'",
+        "apt-get": f'echo "$*" >>{tmp_path}/asked',
+        "dpkg-query": ":",  # nothing is installed
+        "id": "echo 0",
+        "env": 'shift; "$@"',  # after DEBIAN_FRONTEND
+    }
+    for name, text in stubs.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / name).chmod(0o755)
+    command = ["bash", "-euc", f'. scripts/bootstrap.sh; PATH="{tmp_path}:$PATH"; install_packages test']
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    asked = (tmp_path / "asked").read_text().split()
+    assert {"cmake", "doxygen"} <= set(asked)
+    assert ("chromium" in asked, "firefox-esr" in asked) == (offered, offered)
