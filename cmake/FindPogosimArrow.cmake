@@ -67,6 +67,8 @@ elseif(POGOSIM_PYARROW OR EXISTS "${POGOSIM_PYTHON}")
     else()
         set(_arrow_problem "${POGOSIM_PYTHON} cannot import pyarrow:\n${_pyarrow_error}")
     endif()
+elseif(Arrow_FOUND)
+    set(_arrow_problem "the Arrow in ${Arrow_DIR} is ${Arrow_VERSION}, expected 10 or later, and there is no ${POGOSIM_PYTHON}.")
 else()
     set(_arrow_problem "there is no system Arrow for CMake to find, and no ${POGOSIM_PYTHON}.")
 endif()
@@ -76,7 +78,8 @@ find_package_handle_standard_args(PogosimArrow
     REQUIRED_VARS PogosimArrow_ORIGIN
     VERSION_VAR PogosimArrow_VERSION
     REASON_FAILURE_MESSAGE "${_arrow_problem}
-    Run ./build.sh once: it makes .venv with pyarrow in it. Or give a Python that has pyarrow: cmake -DPOGOSIM_PYTHON=...")
+    Run ./build.sh once: it makes .venv with pyarrow in it. Or install Arrow (Ubuntu 26.04 and later: libarrow-dev
+    libparquet-dev), or give a Python that has pyarrow: cmake -DPOGOSIM_PYTHON=...")
 
 if(PogosimArrow_FOUND AND NOT TARGET pogosim::arrow)
     if(_arrow_target STREQUAL "pogosim_pyarrow")
