@@ -7,6 +7,18 @@
 #ifndef POGOSIM_SHARED_STATE_H
 #define POGOSIM_SHARED_STATE_H
 
+// What is between these may use __COUNTER__, which newer versions of clang warn of with -Wpedantic, where it is expanded.
+#define POGO_WITH_COUNTER
+#define POGO_WITHOUT_COUNTER
+#ifdef __has_warning
+#if __has_warning("-Wc2y-extensions")
+#undef POGO_WITH_COUNTER
+#undef POGO_WITHOUT_COUNTER
+#define POGO_WITH_COUNTER _Pragma("clang diagnostic push") _Pragma("clang diagnostic ignored \"-Wc2y-extensions\"")
+#define POGO_WITHOUT_COUNTER _Pragma("clang diagnostic pop")
+#endif
+#endif
+
 /// Marks a variable that simulated robots share intentionally, such as a count over the whole swarm for the data file:
 ///
 ///     POGO_SHARED uint32_t messages_of_all_robots;
@@ -20,7 +32,8 @@
 #define POGO_SHARED __attribute__((section("__DATA,pogo_shared")))
 #else
 // A section for each variable: constants, inline variables and others cannot be in one.
-#define POGO_SHARED __attribute__((section("pogo_shared." POGO_TEXT_OF(__COUNTER__))))
+#define POGO_SHARED \
+    POGO_WITH_COUNTER __attribute__((section("pogo_shared." POGO_TEXT_OF(__COUNTER__)))) POGO_WITHOUT_COUNTER
 #define POGO_TEXT_OF(x) POGO_TEXT_OF_RAW(x)
 #define POGO_TEXT_OF_RAW(x) #x
 #endif

@@ -243,7 +243,7 @@ void pogosim_init_unsupported(void const* variable, char const* name, ...);
 /// Sets a variable from `parameters` by its own name, as in `init_from_configuration(walk.speed)` for
 /// `parameters.walk.speed`; its present value is the default. Types: bool, float, double and integers of up to 32 bits.
 #define init_from_configuration(variable)               \
-    (POGO_NOTE_CONFIGURED(variable, ), POGO_CHECK_CONFIGURABLE(variable), _Generic((variable), \
+    (POGO_NOTE_CONFIGURED(variable, ), POGO_CHECK_CONFIGURABLE(variable), __extension__ _Generic((variable), \
         bool: init_bool_from_configuration,             \
         float: init_float_from_configuration,           \
         double: init_double_from_configuration,         \
@@ -256,7 +256,7 @@ void pogosim_init_unsupported(void const* variable, char const* name, ...);
         default: pogosim_init_unsupported)(&(variable), #variable, (variable)))
 /// The same for arrays of float or double, and for strings (arrays of char).
 #define init_array_from_configuration(array)            \
-    (POGO_NOTE_CONFIGURED(array, ), POGO_CHECK_CONFIGURABLE_ARRAY(array), _Generic(&(array)[0], \
+    (POGO_NOTE_CONFIGURED(array, ), POGO_CHECK_CONFIGURABLE_ARRAY(array), __extension__ _Generic(&(array)[0], \
         float *: init_float_array_from_configuration,   \
         double *: init_double_array_from_configuration, \
         char *: init_string_from_configuration,         \

@@ -31,11 +31,12 @@
 #else
 
 /// Declares `mydata`, a pointer to the T of the current robot; in each file of the program that uses it.
-#define DECLARE_USERDATA(T)             \
-    POGO_IS_DECLARED                    \
-    POGO_MYDATA_OF_THREAD(T)            \
-    extern char REGISTER_USERDATA_once; \
-    POGO_ASK_FOR_USERDATA(__COUNTER__)  \
+#define DECLARE_USERDATA(T)                              \
+    POGO_IS_DECLARED                                     \
+    POGO_MYDATA_OF_THREAD(T)                             \
+    extern char REGISTER_USERDATA_once;                  \
+    POGO_WITH_COUNTER POGO_ASK_FOR_USERDATA(__COUNTER__) \
+    POGO_WITHOUT_COUNTER                                 \
     POGO_MAYBE_SEMICOLON
 /// Tells the simulator how large user data are; once per program. Without it, the linker reports
 /// `REGISTER_USERDATA_once` as undefined. The constant tells readers of debug information the type. In a file without

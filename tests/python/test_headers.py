@@ -87,6 +87,34 @@ def test_sample_compiles_as_c_with_pedantic_warnings(name: str, std: str, semico
     compile_program(tmp_path / "sample", PROGRAMS / "sample.c", compiler=name, flags=flags)
 
 
+def public_headers() -> list[str]:
+    """Names of headers for programs and hosts, without those that say only that they are another simulator's."""
+    folder = ROOT / "include"
+    headers = [*folder.glob("pogosim/*.h"), *folder.glob("pogosim/pogolib/*.h")]
+    return sorted(str(header.relative_to(folder)) for header in headers if "#error" not in header.read_text())
+
+
+@pytest.mark.parametrize(
+    ("name", "standards"),
+    [(name, ["c99", "c11", "c17", "c2x"]) for name in C_COMPILERS]
+    + [(name, ["c++11", "c++14", "c++17", "c++20", "c++2b"]) for name in CPP_COMPILERS],
+)
+def test_public_headers_are_accepted_with_every_standard(name: str, standards: list[str], tmp_path: Path) -> None:
+    is_cpp = "++" in name
+    every = "".join(f'#include "{header}"\n' for header in ["pogobase.h", *public_headers()])
+    (tmp_path / "every.c").write_text(every + "int main(void) { return 0; }\n")
+    (tmp_path / "sdk.c").write_text('#include "pogobot.h"\nint main(void) { return 0; }\n')
+    template = ROOT / "template_prj" / "main.c"  # ends declarations with semicolons, of which C++ is pedantic
+    options = [*STRICT, "-Wpedantic", "-fsyntax-only", *(f"-I{ROOT}/include{sub}" for sub in ("", "/sdk"))]
+    options += ["-x", "c++"] if is_cpp else []
+    for standard in standards:
+        for source in (tmp_path / "every.c", tmp_path / "sdk.c", template):
+            extra = ["-Wno-pedantic"] if is_cpp and source == template else []
+            command = [name, f"-std={standard}", *options, *extra, str(source)]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+            assert (done.returncode, done.stderr) == (0, ""), command
+
+
 BYTES = "(uint8_t*)&m, sizeof(m)"
 SENDING_CALLS = [
     f"pogobot_infrared_{function}({direction}{BYTES})"
