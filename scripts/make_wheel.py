@@ -20,7 +20,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from cross.dependencies import PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, ccache_variables
+from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, ccache_variables
+from wheel_licences import add_licences, libraries_for
 
 SDL_FOLDER = "$ORIGIN/../../../sdl2dll/dll"  # from site-packages/pogosim/simulator/lib
 SDL_THERE = "libSDL2-2.0.so"
@@ -143,6 +144,7 @@ def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     platform = TARGETS[name].platform
     unpacked = built_wheel(folder, with_environment, "wheel.cmake=false")
     change_metadata(unpacked, install_simulator(name, unpacked / "pogosim" / "simulator"))
+    add_licences(unpacked, libraries_for(name), CROSS / "sources")
     (facts,) = unpacked.glob("*.dist-info/WHEEL")
     text = re.sub(r"(?m)^Root-Is-Purelib: .*$", "Root-Is-Purelib: false", facts.read_text(encoding="utf-8"))
     facts.write_text(re.sub(r"(?m)^Tag: .*$", f"Tag: py3-none-{platform}", text), encoding="utf-8")

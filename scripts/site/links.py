@@ -36,7 +36,9 @@ def page_of(path: str) -> str:
         return OUTSIDE[path]
     if path.startswith("docs/") and Path(path).suffix in {".md", ".png"}:
         return path.removeprefix("docs/")
-    visible = "/".join(part.lstrip(".") for part in path.split("/"))  # MkDocs and pages of forges leave out hidden files
+    visible = "/".join(
+        part.lstrip(".") for part in path.split("/")
+    )  # MkDocs and pages of forges leave out hidden files
     return f"{SOURCES}{visible}.md"
 
 

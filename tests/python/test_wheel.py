@@ -30,7 +30,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="auditwheel make
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the wheel, built with the packages of the project's environment."""
     folder = tmp_path_factory.mktemp("wheel")
-    command: list[str | Path] = [sys.executable, ROOT / "scripts" / "make_wheel.py", folder, "--environment"]
+    command: list[str | Path] = [sys.executable, ROOT / "scripts" / "make_wheel.py", "--here", folder, "--environment"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     (made,) = folder.iterdir()
