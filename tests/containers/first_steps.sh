@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# What a user does first, in the container and the folder that this is called in. run.sh calls it.
+set -eux
+pogosim --version
+pogosim new first
+cd first
+make sim
+./first -c conf/test.yaml -g -q --set simulation_time=5
+pogosim picture frames/data.feather swarm.png
+./first -c conf/test.yaml -g -q --set simulation_time=2 --set save_video_period=1 --set 'frames_name=frames/f{:05.0f}.png'
+[ "$(find frames -name 'f0*.png' | wc -l)" -eq 2 ]
+SDL_VIDEODRIVER=dummy ./first -c conf/test.yaml -q --close-at-end --set simulation_time=2 | tee window.txt
+[ ! -s window.txt ]  # no warning that the window cannot be opened
+pogobatch -c conf/test.yaml -S ./first -r 2 -t tmp -o results
+cp main.c main.cpp
+pogosim run main.cpp -c conf/test.yaml -g -q --set simulation_time=1
+rm main.cpp
+ls -l swarm.png frames results
