@@ -4,7 +4,7 @@
     python scripts/make_wheel.py --here dist                # for machines like this one, with its libraries
 
 The first way builds all libraries and the simulator for another machine, perhaps an older one, or one with another
-processor (see cross/dependencies.py). The second one builds with those of this machine, and auditwheel copies them
+processor (see cross/dependencies.py). The second one builds with this machine's libraries, and auditwheel copies them
 into the wheel. In both ways, two libraries come from other packages: Apache Arrow from pyarrow, and SDL, with all that
 it can load of a desktop, from pysdl2-dll. scripts/make_wheel.sh installs all that is needed first.
 """
@@ -18,6 +18,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, ccache_variables
@@ -99,10 +100,13 @@ def packed(unpacked: Path, folder: Path) -> Path:
     return wheel
 
 
-def repaired(wheel: Path, folder: Path, *options: str) -> Path:
-    """Let auditwheel judge a wheel, and put libraries into it that it lacks; return the new one, in a folder."""
+def repaired(wheel: Path, folder: Path) -> Path:
+    """Let auditwheel judge a wheel, and put libraries into it that it lacks; return the new one, in a folder.
+
+    It is named after the oldest C library that it works with.
+    """
     excluded = [word for name in ELSEWHERE for word in ("--exclude", name)]
-    command("auditwheel", "repair", *options, *excluded, "--wheel-dir", folder, wheel)
+    command("auditwheel", "repair", *excluded, "--wheel-dir", folder, wheel)
     (result,) = folder.glob("*.whl")
     return result
 
@@ -133,7 +137,7 @@ def install_simulator(name: str, destination: Path) -> str:
     words: list[str | Path] = [f"-D{key}={value}" for key, value in defined.items()]
     subprocess.run(["cmake", "-S", ROOT, "-B", folder / "pogosim", "-G", "Ninja", *words], check=True)
     subprocess.run(["cmake", "--build", folder / "pogosim"], check=True)
-    install = ["cmake", "--install", folder / "pogosim", "--strip", "--prefix", destination]
+    install: list[str | Path] = ["cmake", "--install", folder / "pogosim", "--strip", "--prefix", destination]
     subprocess.run(install, check=True, stdout=subprocess.DEVNULL)
     (metadata,) = arrow.parent.glob("pyarrow-*.dist-info")
     return metadata.name.removeprefix("pyarrow-").removesuffix(".dist-info")
@@ -149,8 +153,13 @@ def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     text = re.sub(r"(?m)^Root-Is-Purelib: .*$", "Root-Is-Purelib: false", facts.read_text(encoding="utf-8"))
     facts.write_text(re.sub(r"(?m)^Tag: .*$", f"Tag: py3-none-{platform}", text), encoding="utf-8")
     wheel = packed(unpacked, folder / "patched")
-    if platform.startswith("manylinux"):  # fails if something in it is too new for that
-        return repaired(wheel, folder / "repaired", "--plat", platform, "--only-plat")
+    if platform.startswith("manylinux"):
+        judged = repaired(wheel, folder / "repaired")
+        newest = max(map(int, re.findall(r"manylinux_2_(\d+)", judged.name)))
+        with zipfile.ZipFile(judged) as content:
+            added = [name for name in content.namelist() if name.startswith(f"{DISTRIBUTION}.libs/")]
+        if newest > int(platform.split("_")[2]) or added:
+            raise SystemExit(f"make_wheel.py: {wheel.name} is not for all these machines: {judged.name}, {added}")
     return wheel
 
 
@@ -172,7 +181,7 @@ def main() -> None:
     parser.add_argument("output", type=Path, help="folder for the wheel; an older one for the same machines is removed")
     machine = parser.add_mutually_exclusive_group(required=True)
     machine.add_argument("--for", dest="target", choices=TARGETS, help="machines that it is for")
-    machine.add_argument("--here", action="store_true", help="for machines with libraries like those of this one")
+    machine.add_argument("--here", action="store_true", help="for machines with libraries like this one's")
     parser.add_argument("--environment", action="store_true", help="build with the packages of this environment")
     options = parser.parse_args()
     print(make_wheel(options.output.resolve(), options.target, options.environment))

@@ -32,10 +32,11 @@ def built(clone: Path, kept: Path, build_type: str) -> Path:
     build = clone / "build"
     environment = {name: value for name, value in os.environ.items() if not name.startswith("CCACHE")}
     environment["CCACHE_DIR"] = str(kept)
-    for command in (
+    commands: list[list[str | Path]] = [
         ["cmake", "-S", clone, "-B", build, f"-DCMAKE_BUILD_TYPE={build_type}"],
         ["cmake", "--build", build],
-    ):
+    ]
+    for command in commands:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
     return build / "CMakeFiles" / "one_file.dir" / "src" / "one_file.cpp.o"

@@ -77,8 +77,8 @@ def test_licences_are_standard_names() -> None:
 
 
 def test_all_libraries_that_are_fetched_have_a_known_licence() -> None:
-    sys.path.insert(0, str(ROOT / "scripts" / "cross"))
-    from dependencies import SOURCES
+    sys.path.insert(0, str(ROOT / "scripts"))
+    from cross.dependencies import SOURCES
 
     assert set(SOURCES) - {"sdl"} == set(LIBRARIES)  # SDL's own package brings its licence
 

@@ -48,7 +48,7 @@ def configured(folder: Path) -> tuple[int, str]:
     """Configure the project without a Python; returns the exit code, and what was said as one line."""
     (folder / "CMakeLists.txt").write_text(PROJECT)
     (folder / "main.cpp").write_text(MAIN)
-    command = ["cmake", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={folder}/prefix"]
+    command: list[str | Path] = ["cmake", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={folder}/prefix"]
     command += ["-DPOGOSIM_PYTHON=/nowhere/python"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     return done.returncode, " ".join((done.stdout + done.stderr).split())

@@ -176,8 +176,8 @@ def test_images_are_distributions_of_the_table() -> None:
 
 
 def test_wheels_are_for_the_same_machines_on_both_forges() -> None:
-    sys.path.insert(0, str(ROOT / "scripts" / "cross"))
-    from dependencies import TARGETS
+    sys.path.insert(0, str(ROOT / "scripts"))
+    from cross.dependencies import TARGETS
 
     targets = matrix(GITHUB / "workflows" / "wheels.yml", "target")
     assert targets == matrix(GITLAB, "TARGET")

@@ -191,7 +191,8 @@ TEST_F(WindowDriver, ClosingTheWindowEndsTheWayBackToALaterMomentAtOnce) {
                   exchange.send(Quit{});
               }),
               ExitCode::done);
-    EXPECT_LT(simulation_->world().step, start + 2);
+    // Steps are made between the two requests, more on a busy machine; the end of the run is ten million of them away.
+    EXPECT_LT(simulation_->world().step, start + 5'000'000);
 }
 
 TEST_F(WindowDriver, RunThatWritesADataFileSaysThatItCannotGoBack) {
