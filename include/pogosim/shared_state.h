@@ -7,7 +7,7 @@
 #ifndef POGOSIM_SHARED_STATE_H
 #define POGOSIM_SHARED_STATE_H
 
-// What is between these may use __COUNTER__, which newer versions of clang warn of with -Wpedantic where it is expanded.
+// What is between these may use __COUNTER__, which newer clang warns of with -Wpedantic where it is expanded.
 #define POGO_WITH_COUNTER
 #define POGO_WITHOUT_COUNTER
 #ifdef __has_warning
