@@ -172,7 +172,7 @@ CrashHandlerScope::CrashHandlerScope(CrashHandler& handler) : handler_(*handler.
     if (handler_.depth++ == 0) {
         thread_.emplace();
         watch_for_forks();
-        handler_.thread = pthread_self();
+        handler_.thread = SignalledThread::current();
         handler_.inside = false;
         start_watch(handler_, watches_over_blocked());
         if (!watch_over_blocked(handler_)) {
@@ -220,7 +220,7 @@ void WorkerCrashHandler::enter() {
     is_entered_ = true;
     use_large_signal_stack();
     CrashHandlerState& self = *handler_.state_;
-    self.thread = pthread_self();
+    self.thread = SignalledThread::current();
     active_handler = &self;
     need_signals();
     start_watch(self);
@@ -237,7 +237,7 @@ void begin_rescue_of_run(UserFailure const& failure) {
 }
 
 ProcessRun::ProcessRun(CrashHandler& handler) {
-    handler.state_->thread = pthread_self();
+    handler.state_->thread = SignalledThread::current();
     process_run = handler.state_.get();
     enter_stage(RunStage::running);  // from now on, signals are for the run
 }
@@ -452,8 +452,8 @@ int note_interrupt(int signal, char const* name) {
     if (run == nullptr) {
         return 0;
     }
-    if (pthread_equal(run->thread, pthread_self()) == 0) {
-        pthread_kill(run->thread, signal);
+    if (!run->thread.is_current()) {
+        pthread_kill(run->thread.id(), signal);
         return 0;
     }
     double const now_s = monotonic_s();

@@ -2,7 +2,6 @@
 // crash message (crash_message.cpp), and what watches processes, children and blocked calls. For this room only.
 #pragma once
 
-#include <pthread.h>
 #include <sys/types.h>
 
 #include <array>
@@ -15,6 +14,7 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_message.hpp"
 #include "process/running_code.hpp"
+#include "process/sent_signals.hpp"
 #include "process/signal_text.hpp"
 #include "process/thread_timer.hpp"
 
@@ -65,7 +65,7 @@ struct CrashHandlerState {
     CrashHandlerState(RunningCode const& running_code, void const* in_program, double timeout_s);
 
     RunningCode const& running;  // for messages
-    pthread_t thread{};          // that works for the run: the only one that may jump
+    SignalledThread thread;      // that works for the run: the only one that may jump
     // Further threads that run user code at the same time, see WorkerCrashHandler.
     CrashHandlerState* helped = nullptr;                // the handler of their run; null: this is one
     std::atomic<CrashHandlerState*> helpers = nullptr;  // the first of them

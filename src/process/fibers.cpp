@@ -29,6 +29,14 @@ extern "C" {
 [[gnu::weak]] void __tsan_switch_to_fiber(void* fiber, unsigned flags);
 }
 
+// libc++ has this function of the C++ ABI, and does not declare it.
+#ifdef _LIBCPP_VERSION
+namespace __cxxabiv1 {
+struct __cxa_eh_globals;
+extern "C" __cxa_eh_globals* __cxa_get_globals() noexcept;
+}  // namespace __cxxabiv1
+#endif
+
 namespace pogosim {
 
 namespace {
@@ -43,6 +51,13 @@ using boost::context::detail::transfer_t;
 constexpr std::size_t kGuardBytes = std::size_t{1} << 20U;  // large local arrays must not reach beyond it
 constexpr std::size_t kJumpedBytes = 65536;  // of frames between the resuming context and the target of a jump
 constexpr double kBytesPerKib = 1024.0;
+
+// What mincore() tells of a page.
+#ifdef __APPLE__
+using PageState = char;
+#else
+using PageState = unsigned char;
+#endif
 
 /// Memory with forbidden pages before it, in which an overflow ends.
 class Stack {
@@ -344,13 +359,14 @@ void FiberPool::restore(std::vector<SavedFiber> const& saved) {
 std::size_t FiberPool::deepest_bytes() const {
     std::lock_guard const lock(mutex_);
     auto const page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    std::vector<unsigned char> is_in_memory(stack_bytes_ / page + 1);
+    std::vector<PageState> is_in_memory(stack_bytes_ / page + 1);
     std::size_t deepest = 0;
     for (std::unique_ptr<Fiber> const& fiber : all_) {
         std::span const stack = fiber->stack();
         auto* const begin = const_cast<std::byte*>(stack.data());
         if (mincore(begin, stack.size(), is_in_memory.data()) == 0) {
-            auto const first = std::ranges::find_if(is_in_memory, [](unsigned char page) { return (page & 1U) != 0; });
+            auto const first = std::ranges::find_if(
+                is_in_memory, [](PageState page) { return (static_cast<unsigned>(page) & 1U) != 0; });
             auto const unused = static_cast<std::size_t>(first - is_in_memory.begin()) * page;
             deepest = std::max(deepest, stack.size() - std::min(unused, stack.size()));
         }

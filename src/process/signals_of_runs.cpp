@@ -133,7 +133,7 @@ ThreadOfRuns::ThreadOfRuns() {
         return;
     }
     use_large_signal_stack();
-    if (kTimersStay && !process_is_ours()) {
+    if (!process_is_ours()) {
         keep_timers();
     }
     need_signals();

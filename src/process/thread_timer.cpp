@@ -1,11 +1,11 @@
 #include "process/thread_timer.hpp"
 
+#ifdef __linux__
 #include <sys/syscall.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <csignal>
+#endif
 
 namespace pogosim {
 
@@ -58,30 +58,46 @@ void ThreadTimer::remove() {
     exists_ = is_armed_ = false;
 }
 
+void ThreadTimer::forget() {
+    exists_ = is_armed_ = false;
+}
+
+bool is_of_timer(ThreadTimers const* timers, siginfo_t const& info) {
+    return timers != nullptr && info.si_code == SI_TIMER && info.si_value.sival_ptr == timers;
+}
+
 #else
 
-void ThreadTimer::prepare() {}
+void ThreadTimer::prepare() {
+    if (timer_ == nullptr) {
+        timer_ = std::make_unique<SentTimer>(clock_, signal_);
+    }
+}
 
 void ThreadTimer::arm(double period_s) {
-    constexpr double us_per_s = 1e6;
-    itimerval times = {};
-    times.it_interval.tv_sec = static_cast<time_t>(period_s);
-    times.it_interval.tv_usec = static_cast<suseconds_t>((period_s - std::floor(period_s)) * us_per_s);
-    times.it_value = times.it_interval;
-    setitimer(clock_ == TimerClock::processor ? ITIMER_PROF : ITIMER_REAL, &times, nullptr);
-    exists_ = is_armed_ = true;
+    prepare();
+    is_armed_ = true;
+    timer_->start(period_s);
 }
 
 void ThreadTimer::disarm() {
-    remove();
+    if (is_armed_) {
+        timer_->stop();
+        is_armed_ = false;
+    }
 }
 
 void ThreadTimer::remove() {
-    if (exists_) {
-        itimerval const none = {};
-        setitimer(clock_ == TimerClock::processor ? ITIMER_PROF : ITIMER_REAL, &none, nullptr);
-    }
-    exists_ = is_armed_ = false;
+    forget();
+}
+
+void ThreadTimer::forget() {
+    timer_.reset();
+    is_armed_ = false;
+}
+
+bool is_of_timer(ThreadTimers const* /*timers*/, siginfo_t const& /*info*/) {
+    return false;
 }
 
 #endif

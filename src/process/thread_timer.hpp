@@ -2,21 +2,24 @@
 #pragma once
 
 #include <csignal>
+
+#ifdef __linux__
 #include <ctime>
+#else
+#include <memory>
+
+#include "process/sent_timer.hpp"
+#endif
+
+#include "process/timer_clock.hpp"
 
 namespace pogosim {
 
-enum class TimerClock {
-    processor,  // time for which the thread uses a processor
-    wall,
-};
-
 /// Belongs to the thread that calls arm() or prepare() first. Children of fork() and programs started with exec() do
 /// not inherit it.
-/// On systems without such timers, each process has one of each kind.
 class ThreadTimer {
 public:
-    /// The handler of `signal` finds `owner` in siginfo_t::si_value.
+    /// The handler of `signal` finds `owner` in siginfo_t::si_value, see is_of_timer().
     ThreadTimer(TimerClock clock, int signal, void* owner) : clock_(clock), signal_(signal), owner_(owner) {}
     ~ThreadTimer() { remove(); }
     ThreadTimer(ThreadTimer const&) = delete;
@@ -35,29 +38,24 @@ public:
     void remove();
 
     /// In a child of fork(), which has not inherited it.
-    void forget() { exists_ = is_armed_ = false; }
+    void forget();
 
     bool is_armed() const { return is_armed_; }
 
 private:
     TimerClock clock_;
     int signal_;
-    void* owner_;
-    bool exists_ = false;
+    [[maybe_unused]] void* owner_;
     bool is_armed_ = false;
 #ifdef __linux__
+    bool exists_ = false;
     timer_t timer_{};
+#else
+    std::unique_ptr<SentTimer> timer_;
 #endif
 };
 
-/// Whether timers of one thread may stay while another one has its own.
-#ifdef __linux__
-inline constexpr bool kTimersStay = true;
-#else
-inline constexpr bool kTimersStay = false;
-#endif
-
-/// Those of the watch over user code. Their signals have the address of this in siginfo_t::si_value.
+/// Those of the watch over user code.
 struct ThreadTimers {
     ThreadTimers() = default;
     ~ThreadTimers() = default;
@@ -67,5 +65,9 @@ struct ThreadTimers {
     ThreadTimer processor{TimerClock::processor, SIGPROF, this};
     ThreadTimer wall{TimerClock::wall, SIGALRM, this};
 };
+
+/// For handlers: whether a signal is from one of these timers of the system. Where it has none, signals are sent: see
+/// take_sent_signal().
+bool is_of_timer(ThreadTimers const* timers, siginfo_t const& info);
 
 }  // namespace pogosim

@@ -1,9 +1,6 @@
 // The watch over user code that does not return. It goes by the processor time of the thread (SIGPROF), which waiting
 // on a busy machine does not use up; and, once the run was asked to end, by wall-clock time (SIGALRM), which passes in
 // sleep(), too. After user code was left by force, SIGALRM watches only over the data file.
-#include <pthread.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <csignal>
 #include <ctime>
@@ -13,6 +10,7 @@
 #include "process/crash_handler.hpp"
 #include "process/crash_handler_state.hpp"
 #include "process/crash_message.hpp"
+#include "process/sent_signals.hpp"
 
 namespace pogosim {
 
@@ -41,32 +39,24 @@ double thread_processor_time_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// The run whose timer has sent this signal to this thread; null: it is not from one of them.
-CrashHandlerState* run_of(siginfo_t const& info) {
+/// The run that a signal is for: one of its timers has sent it, or hurry_thread() has. Null: there is none; a signal of
+/// others, such as an alarm of the host, has been passed on.
+CrashHandlerState* run_of(int signal, siginfo_t* info, void* signal_context) {
     CrashHandlerState* const handler = active_handler;
-    if (handler == nullptr) {
-        return nullptr;
+    ThreadTimers const* const timers = handler != nullptr ? handler->timers : timers_of_thread;
+    if (take_sent_signal(signal) || is_of_timer(timers, *info)) {
+        return handler;
     }
-#ifdef SI_TKILL
-    bool const is_of_hurry = info.si_code == SI_TKILL && info.si_pid == getpid();
-#else
-    bool const is_of_hurry = info.si_code != SI_TIMER;
-#endif
-    bool const is_of_timer = info.si_code == SI_TIMER && info.si_value.sival_ptr == handler->timers;
-    return is_of_hurry || is_of_timer ? handler : nullptr;  // else an alarm of the host, or a signal of another process
-}
-
-/// Passes on a signal that is for no run, unless a timer has sent it that goes on between the runs of this thread.
-void pass_on_others(int signal, siginfo_t* info, void* signal_context) {
-    if (info->si_code != SI_TIMER || timers_of_thread == nullptr || info->si_value.sival_ptr != timers_of_thread) {
+    // Timers of a host's thread may go on between its runs.
+    if (!is_of_timer(timers_of_thread, *info)) {
         pass_on(signal, info, signal_context);
     }
+    return nullptr;
 }
 
 void on_watch(int signal, siginfo_t* info, void* signal_context) {
-    CrashHandlerState* const run = run_of(*info);
+    CrashHandlerState* const run = run_of(signal, info, signal_context);
     if (run == nullptr) {
-        pass_on_others(signal, info, signal_context);
         return;
     }
     CrashHandlerState& handler = *run;
@@ -106,7 +96,7 @@ void on_watch(int signal, siginfo_t* info, void* signal_context) {
 void hurry_thread(CrashHandlerState& handler, char const* request_name) {
     if (handler.is_watching) {
         handler.hurry_request = request_name;
-        pthread_kill(handler.thread, SIGALRM);
+        handler.thread.send(SIGALRM);
     }
 }
 
@@ -181,9 +171,8 @@ void look_after_rescue(CrashHandlerState& handler, double now_s) {
 }
 
 void on_look(int signal, siginfo_t* info, void* signal_context) {
-    CrashHandlerState* const run = run_of(*info);
+    CrashHandlerState* const run = run_of(signal, info, signal_context);
     if (run == nullptr) {
-        pass_on_others(signal, info, signal_context);
         return;
     }
     CrashHandlerState& handler = *run;

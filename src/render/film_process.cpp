@@ -22,10 +22,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/environment.hpp"
 #include "base/locked_file.hpp"
 #include "base/save_progress.hpp"
-
-extern "C" char** environ;
 
 namespace pogosim {
 
@@ -143,8 +142,8 @@ void FilmProcess::spawn(std::vector<std::string> const& arguments, int input) {
     }
     pointers.push_back(nullptr);
     SpawnSettings const settings(input, output_);
-    int const error =
-        posix_spawnp(&process_, name.c_str(), settings.actions(), settings.attributes(), pointers.data(), environ);
+    int const error = posix_spawnp(&process_, name.c_str(), settings.actions(), settings.attributes(), pointers.data(),
+                                   environment());
     if (error != 0) {
         process_ = -1;
         fail_with_errno(error);

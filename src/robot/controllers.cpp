@@ -1,7 +1,6 @@
 #include "robot/controllers.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "base/counted.hpp"
+#include "base/environment.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "device/clock.hpp"
@@ -91,7 +91,7 @@ LoopGlobals stored_globals() {
 #endif
 void call_main(int (*function)(), char** arguments) {
     using Main = int (*)(int, char**, char**);
-    reinterpret_cast<Main>(reinterpret_cast<void (*)()>(function))(1, arguments, environ);
+    reinterpret_cast<Main>(reinterpret_cast<void (*)()>(function))(1, arguments, environment());
 }
 
 }  // namespace
