@@ -18,7 +18,7 @@ struct pogosim_program {
     int (*main)(void);                    ///< the program's main(), which the headers rename
     size_t const* user_data_bytes;        ///< size of USERDATA; 0 without REGISTER_USERDATA
     void (**construct_user_data)(void*);  ///< constructs USERDATA in C++ programs; NULL in others
-    char const* for_sdk;                  ///< not NULL: written for the robots' SDK (pogobot.h): main() does not return
+    char const* for_sdk;  ///< of the robots' SDK (pogobot.h), if it is 1: main() does not return. May be NULL
 };
 
 /// The structure of the program that contains it.
@@ -34,6 +34,15 @@ void pogosim_guard_process(void);
 /// called this, among the functions that run before main(). Those may run again, for each robot that has variables of
 /// its own.
 void pogosim_before_constructors(struct pogosim_program const* program, void (*self)(void));
+
+/// On macOS, where such functions run in another order, says that a function before main() is of the simulator, and has
+/// no part in that.
+#ifdef __APPLE__
+#define POGO_OWN_INITIALIZER(function) \
+    __attribute__((used, section("__DATA,pogo_own"))) static void (*const own_##function)(void) = function;
+#else
+#define POGO_OWN_INITIALIZER(function)
+#endif
 
 /// In C++: calls `destroy(object)`, for a static object, when the process ends or `library` leaves memory; never for an
 /// object of a robot that has variables of its own. Returns 0 unless memory is short.

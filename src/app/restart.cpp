@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "config/scenario_keys.hpp"
+#include "process/own_executable.hpp"
 
 namespace pogosim {
 
@@ -84,9 +85,7 @@ void restart_program(char** argv, std::filesystem::path const& folder, Restart c
     std::error_code ignored;
     std::filesystem::current_path(folder, ignored);  // the program may have left it
     setenv(kVariable, text_of(restart).c_str(), /*overwrite=*/1);
-#ifdef __linux__
-    execv("/proc/self/exe", argv);
-#endif
+    execv(own_executable().c_str(), argv);
     execvp(argv[0], argv);
     unsetenv(kVariable);
 }

@@ -21,6 +21,11 @@
 
 #ifdef __linux__
 #include <sys/prctl.h>
+#else
+#include <mach/mach.h>
+#include <sys/event.h>
+
+#include "base/background_thread.hpp"
 #endif
 
 #include "process/process.hpp"
@@ -110,8 +115,25 @@ std::ptrdiff_t entries_of(char const* folder) {
     return error ? 0 : std::distance(begin(entries), end(entries));
 }
 
+std::ptrdiff_t count_threads() {
+#ifdef __linux__
+    return entries_of("/proc/self/task");
+#else
+    thread_act_array_t threads = nullptr;
+    mach_msg_type_number_t count = 0;
+    if (task_threads(mach_task_self(), &threads, &count) != KERN_SUCCESS) {
+        return 0;
+    }
+    for (mach_msg_type_number_t i = 0; i < count; ++i) {
+        mach_port_deallocate(mach_task_self(), threads[i]);
+    }
+    vm_deallocate(mach_task_self(), reinterpret_cast<vm_address_t>(threads), count * sizeof(*threads));
+    return count;
+#endif
+}
+
 Held held_now() {
-    return {.threads = entries_of("/proc/self/task"), .files = entries_of("/proc/self/fd")};
+    return {.threads = count_threads(), .files = entries_of("/dev/fd")};
 }
 
 std::optional<Held> held_before_constructors;
@@ -141,13 +163,22 @@ bool log_to(std::string const& file) {
 }
 
 /// This process, a copy, ends with the server.
-void end_with([[maybe_unused]] pid_t server) {
+void end_with(pid_t server) {
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+#else
+    start_background_thread("waiting for the end of the server", [server] {
+        int const queue = kqueue();
+        struct kevent end = {};
+        EV_SET(&end, static_cast<uintptr_t>(server), EVFILT_PROC, EV_ADD, NOTE_EXIT, 0, nullptr);
+        if (queue >= 0 && kevent(queue, &end, 1, &end, 1, nullptr) > 0) {
+            end_process(EXIT_FAILURE);
+        }
+    }).detach();
+#endif
     if (getppid() != server) {
         end_process(EXIT_FAILURE);
     }
-#endif
 }
 
 /// The variables of a program as they were when this was made.

@@ -11,6 +11,9 @@
 #define POGOSIM_HAS_MALLINFO2
 #endif
 #endif
+#ifdef __APPLE__
+#include <malloc/malloc.h>
+#endif
 
 namespace pogosim {
 
@@ -38,6 +41,8 @@ std::size_t allocated_bytes() {
 #ifdef POGOSIM_HAS_MALLINFO2
     auto const info = mallinfo2();
     return info.uordblks + info.hblkhd;
+#elif defined(__APPLE__)
+    return mstats().bytes_used;
 #else
     return 0;
 #endif

@@ -14,7 +14,10 @@ constexpr std::uint64_t kAddressElsewhere = 0xADD2E55;  // any number
 // Where the system puts programs, their heaps, libraries, stacks and what a sanitizer allocates. A word in these ranges
 // counts as an address, whether or not this run has mapped anything there: otherwise the same number would be an
 // address in some runs and a number in others.
-#ifdef __aarch64__
+#if defined(__APPLE__)
+constexpr std::uint64_t kFirstAddress = 0x100000000;
+constexpr std::uint64_t kEndOfAddresses = 0x800000000000;
+#elif defined(__aarch64__)
 constexpr std::uint64_t kFirstAddress = 0xaaaa00000000;
 constexpr std::uint64_t kEndOfAddresses = 0x1000000000000;
 #else

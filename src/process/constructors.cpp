@@ -3,6 +3,9 @@
 #ifdef __linux__
 #include <link.h>
 #include <unistd.h>
+#else
+#include <dlfcn.h>
+#include <mach-o/dyld.h>
 #endif
 
 #include <algorithm>
@@ -11,6 +14,9 @@
 #include <mutex>
 #include <utility>
 
+#ifndef __linux__
+#include "process/mach_o_file.hpp"
+#endif
 #include "process/program_memory.hpp"
 
 namespace pogosim {
@@ -33,8 +39,8 @@ bool contains(dl_phdr_info const& object, std::uintptr_t place) {
 }
 
 /// The functions of an array that entries of these kinds describe: its place and its size.
-std::span<void (*const)()> functions_of(dl_phdr_info const& object, ElfW(Dyn) const* entry,
-                                        decltype(entry->d_tag) of_place, decltype(entry->d_tag) of_size) {
+std::vector<void (*)()> functions_of(dl_phdr_info const& object, ElfW(Dyn) const* entry,
+                                     decltype(entry->d_tag) of_place, decltype(entry->d_tag) of_size) {
     std::uintptr_t place = 0;
     std::size_t bytes = 0;
     for (; entry->d_tag != DT_NULL; ++entry) {
@@ -42,7 +48,8 @@ std::span<void (*const)()> functions_of(dl_phdr_info const& object, ElfW(Dyn) co
         bytes = entry->d_tag == of_size ? entry->d_un.d_val : bytes;
     }
     // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
-    return {reinterpret_cast<void (*const*)()>(place), bytes / sizeof(void (*)())};
+    std::span const functions(reinterpret_cast<void (*const*)()>(place), bytes / sizeof(void (*)()));
+    return {functions.begin(), functions.end()};
 }
 
 /// Takes what the loader has made read-only after its start (RELRO: whole pages) off the memory that can be written.
@@ -98,8 +105,50 @@ LoadedObject loaded_object_at(void const* place) {
 
 #else
 
-LoadedObject loaded_object_at(void const* /*place*/) {
-    return {};
+namespace {
+
+/// A part of a file in memory, by what the file says of its place.
+std::byte* place_of(MachOFile const& file, void const* header, std::uint64_t address) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
+    return reinterpret_cast<std::byte*>(reinterpret_cast<std::uint64_t>(header) + (address - file.address));
+}
+
+template <class T>
+std::span<T const> array_in(MachOFile const& file, void const* header, MachOSection const& section) {
+    return {reinterpret_cast<T const*>(place_of(file, header, section.address)), section.bytes / sizeof(T)};
+}
+
+LoadedObject object_with(void const* header) {
+    MachOFile const file = mach_o_in_memory(header);
+    LoadedObject found{.load_address = reinterpret_cast<std::uintptr_t>(header)};
+    for (MachOSegment const& segment : file.segments) {
+        if (segment.is_writable && segment.memory_bytes > 0) {
+            found.writable.emplace_back(place_of(file, header, segment.address), segment.memory_bytes);
+        }
+    }
+    for (MachOSection const& section : file.sections) {
+        if (section.type == MachOSection::kInitializerOffsets) {
+            for (std::uint32_t const offset : array_in<std::uint32_t>(file, header, section)) {
+                std::byte* const function = place_of(file, header, file.address + offset);
+                found.initializers.push_back(reinterpret_cast<void (*)()>(function));
+            }
+        }
+        bool const is_last = section.type == MachOSection::kFinalizers;
+        if (is_last || section.type == MachOSection::kInitializers) {
+            auto const functions = array_in<void (*)()>(file, header, section);
+            std::vector<void (*)()>& all = is_last ? found.finalizers : found.initializers;
+            all.insert(all.end(), functions.begin(), functions.end());
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+LoadedObject loaded_object_at(void const* place) {
+    Dl_info info = {};
+    bool const is_known = dladdr(place, &info) != 0 && info.dli_fbase != nullptr;
+    return is_known ? object_with(info.dli_fbase) : LoadedObject{};
 }
 
 #endif
@@ -144,27 +193,73 @@ void construct_again(Constructors const& constructors, std::span<std::span<std::
     }
 }
 
-}  // namespace pogosim
+namespace {
 
-void pogosim_before_constructors(pogosim_program const* program, void (*self)()) {
-    using namespace pogosim;
-    constexpr std::size_t kCompilersOwn = 1;  // the last one, in C as well, which does nothing
-    forget_constructors_of(*program);         // of one that was there before it, and did not fit
-    LoadedObject const object = loaded_object_at(program);
-    auto const first = std::ranges::find(object.initializers, self);
-    std::vector<void (*)()> after;
-    if (first != object.initializers.end()) {
-        after.assign(first + 1, object.initializers.end());
-    }
-    if (after.size() <= kCompilersOwn) {
+/// Notes that these functions of a program are about to run.
+void note(pogosim_program const& program, LoadedObject const& object, std::vector<void (*)()> functions) {
+    if (functions.size() <= kFunctionsOfCompiler) {
         return;
     }
-    Constructors constructors{.before = {}, .functions = std::move(after)};
+    Constructors constructors{.before = {}, .functions = std::move(functions)};
     for (std::span<std::byte> const piece : object.writable) {
         Constructors::Piece kept{.place = piece.data(), .bytes = std::vector<std::byte>(piece.size())};
         copy_program_bytes(kept.bytes.data(), kept.place, kept.bytes.size());
         constructors.before.push_back(std::move(kept));
     }
     std::lock_guard const lock(noted().mutex);
-    noted().of_program[program] = std::make_shared<Constructors const>(std::move(constructors));
+    noted().of_program[&program] = std::make_shared<Constructors const>(std::move(constructors));
 }
+
+#ifdef __APPLE__
+
+/// A file has been loaded, and its functions have not run yet. On this system they run in the order in which files were
+/// linked, so no function of ours comes before those of the program; but the program says which are ours (program.h).
+void note_loaded(mach_header const* header, std::intptr_t /*moved_by*/) {
+    MachOFile const file = mach_o_in_memory(header);
+    pogosim_program const* program = nullptr;
+    std::vector<void (*)()> own;
+    for (MachOSection const& section : file.sections) {
+        if (section.name == "pogo_program" && section.bytes >= sizeof(program)) {
+            program = array_in<pogosim_program const*>(file, header, section).front();
+        } else if (section.name == "pogo_own") {
+            auto const functions = array_in<void (*)()>(file, header, section);
+            own.assign(functions.begin(), functions.end());
+        }
+    }
+    if (program == nullptr) {
+        return;
+    }
+    forget_constructors_of(*program);
+    LoadedObject const object = object_with(header);
+    std::vector<void (*)()> functions = object.initializers;
+    std::erase_if(functions, [&own](auto* const one) { return std::ranges::find(own, one) != own.end(); });
+    note(*program, object, std::move(functions));
+}
+
+__attribute__((constructor)) void watch_for_programs() {
+    _dyld_register_func_for_add_image(note_loaded);
+}
+
+#endif
+
+}  // namespace
+
+}  // namespace pogosim
+
+#ifdef __APPLE__
+
+void pogosim_before_constructors(pogosim_program const* /*program*/, void (* /*self*/)()) {}
+
+#else
+
+void pogosim_before_constructors(pogosim_program const* program, void (*self)()) {
+    using namespace pogosim;
+    forget_constructors_of(*program);  // of one that was there before it, and did not fit
+    LoadedObject const object = loaded_object_at(program);
+    auto const first = std::ranges::find(object.initializers, self);
+    if (first != object.initializers.end()) {
+        note(*program, object, {first + 1, object.initializers.end()});
+    }
+}
+
+#endif

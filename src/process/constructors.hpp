@@ -16,11 +16,18 @@ namespace pogosim {
 struct LoadedObject {
     std::uintptr_t load_address = 0;  // of what its file says
     std::vector<std::span<std::byte>> writable{};
-    std::span<void (*const)()> initializers{};  // called before main(), or when it was loaded
-    std::span<void (*const)()> finalizers{};    // called at the end of the process, or when it is unloaded
+    std::vector<void (*)()> initializers{};  // called before main(), or when it was loaded
+    std::vector<void (*)()> finalizers{};    // called at the end of the process, or when it is unloaded
 };
 
-/// The object that contains a place in memory. Empty if that is not known, as on systems other than Linux.
+/// Functions of the compiler among them, in C as well, which do nothing: the last ones.
+#ifdef __linux__
+inline constexpr std::size_t kFunctionsOfCompiler = 1;
+#else
+inline constexpr std::size_t kFunctionsOfCompiler = 0;
+#endif
+
+/// The object that contains a place in memory. Empty if that is not known.
 LoadedObject loaded_object_at(void const* place);
 
 /// What a program's variables were before its static objects were constructed, and what constructs them.

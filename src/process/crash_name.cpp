@@ -43,6 +43,12 @@ struct Stack {
 
 thread_local Stack noted;
 
+#ifdef __APPLE__
+auto const& registers_of(void const* signal_context) {
+    return static_cast<ucontext_t const*>(signal_context)->uc_mcontext->__ss;
+}
+#endif
+
 /// Null on unknown architectures.
 void* stack_pointer([[maybe_unused]] void const* signal_context) {
 #if defined(__linux__) && defined(__x86_64__)
@@ -50,6 +56,10 @@ void* stack_pointer([[maybe_unused]] void const* signal_context) {
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
 #elif defined(__linux__) && defined(__aarch64__)
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.sp);
+#elif defined(__APPLE__) && defined(__x86_64__)
+    return reinterpret_cast<void*>(registers_of(signal_context).__rsp);
+#elif defined(__APPLE__)
+    return reinterpret_cast<void*>(registers_of(signal_context).__sp);
 #else
     return nullptr;
 #endif
@@ -76,6 +86,10 @@ void note_stack() {
         }
         pthread_attr_destroy(&attributes);
     }
+#elif defined(__APPLE__)
+    std::size_t const bytes = pthread_get_stacksize_np(pthread_self());
+    auto const first = reinterpret_cast<std::uintptr_t>(pthread_get_stackaddr_np(pthread_self()));  // the highest
+    noted = {.end = first - bytes, .bytes = bytes};
 #endif
 }
 
@@ -115,6 +129,10 @@ void const* return_address([[maybe_unused]] void const* signal_context) {
     constexpr int kLinkRegister = 30;
     // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address in a register
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.regs[kLinkRegister]);
+#elif defined(__APPLE__) && defined(__x86_64__)
+    return *reinterpret_cast<void* const*>(registers_of(signal_context).__rsp);
+#elif defined(__APPLE__)
+    return reinterpret_cast<void*>(registers_of(signal_context).__lr);
 #else
     return nullptr;
 #endif
@@ -126,6 +144,10 @@ void* program_counter([[maybe_unused]] void const* signal_context) {
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RIP]);
 #elif defined(__linux__) && defined(__aarch64__)
     return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.pc);
+#elif defined(__APPLE__) && defined(__x86_64__)
+    return reinterpret_cast<void*>(registers_of(signal_context).__rip);
+#elif defined(__APPLE__)
+    return reinterpret_cast<void*>(registers_of(signal_context).__pc);
 #else
     return nullptr;
 #endif

@@ -17,17 +17,7 @@
 #include "base/counted.hpp"
 #include "base/memory.hpp"
 #include "process/program_memory.hpp"
-
-// A sanitizer needs to know which stack is in use. It may be in the user's program alone, so it is asked for here.
-extern "C" {
-[[gnu::weak]] void __sanitizer_start_switch_fiber(void** fake_stack, void const* bottom, std::size_t bytes);
-[[gnu::weak]] void __sanitizer_finish_switch_fiber(void* fake_stack, void const** old_bottom, std::size_t* old_bytes);
-[[gnu::weak]] void __asan_unpoison_memory_region(void const volatile* address, std::size_t bytes);
-[[gnu::weak]] void* __tsan_create_fiber(unsigned flags);
-[[gnu::weak]] void __tsan_destroy_fiber(void* fiber);
-[[gnu::weak]] void* __tsan_get_current_fiber();
-[[gnu::weak]] void __tsan_switch_to_fiber(void* fiber, unsigned flags);
-}
+#include "process/sanitizer_functions.hpp"  // which need to know which stack is in use
 
 // libc++ has this function of the C++ ABI, and does not declare it.
 #ifdef _LIBCPP_VERSION

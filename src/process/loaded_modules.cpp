@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #ifdef __linux__
@@ -10,9 +11,15 @@
 #include <link.h>
 
 #include <cstring>
-#include <filesystem>
 #include <string_view>
 #include <system_error>
+
+#include "process/own_executable.hpp"
+#else
+#include <mach-o/dyld.h>
+#include <mach/mach.h>
+
+#include "process/mach_o_file.hpp"
 #endif
 
 namespace pogosim {
@@ -61,7 +68,7 @@ int add_module(dl_phdr_info* info, std::size_t /*bytes*/, void* into) {
     }
     if (found.build.empty()) {
         std::error_code error;
-        auto const size = std::filesystem::file_size(file.empty() ? "/proc/self/exe" : file, error);
+        auto const size = std::filesystem::file_size(file.empty() ? own_executable() : file, error);
         found.build = error ? "" : fmt::format("{} bytes", size);
     }
     static_cast<std::vector<LoadedModule>*>(into)->push_back(std::move(found));
@@ -76,21 +83,6 @@ std::vector<LoadedModule> loaded_modules() {
     return modules;
 }
 
-#else
-
-std::vector<LoadedModule> loaded_modules() {
-    return {};
-}
-
-#endif
-
-LoadedModule const* module_at(std::vector<LoadedModule> const& modules, void const* place) {
-    auto const address = reinterpret_cast<std::uint64_t>(place);
-    auto const found = std::ranges::find_if(
-        modules, [address](LoadedModule const& module) { return address >= module.begin && address < module.end; });
-    return found == modules.end() ? nullptr : &*found;
-}
-
 std::vector<MappedMemory> mapped_memory() {
     std::vector<MappedMemory> pieces;
     std::ifstream maps("/proc/self/maps");
@@ -101,6 +93,64 @@ std::vector<MappedMemory> mapped_memory() {
         }
     }
     return pieces;
+}
+
+#else
+
+std::vector<LoadedModule> loaded_modules() {
+    std::vector<LoadedModule> modules;
+    for (std::uint32_t i = 0; i < _dyld_image_count(); ++i) {
+        void const* const header = _dyld_get_image_header(i);
+        char const* const path = _dyld_get_image_name(i);
+        if (header == nullptr || path == nullptr) {
+            continue;  // another thread has unloaded it
+        }
+        MachOFile const file = mach_o_in_memory(header);
+        bool const is_executable = file.type == MachOFile::kExecutable;
+        LoadedModule found{.name = is_executable ? "" : std::filesystem::path(path).filename().string(),
+                           .begin = reinterpret_cast<std::uint64_t>(header),
+                           .end = reinterpret_cast<std::uint64_t>(header),
+                           .build = file.build};
+        for (MachOSegment const& segment : file.segments) {
+            // Nothing leads to what is before the header, nor to what the dynamic linker alone reads.
+            if (segment.address >= file.address && segment.name != "__LINKEDIT") {
+                found.end = std::max(found.end, found.begin + (segment.address - file.address) + segment.memory_bytes);
+            }
+        }
+        modules.push_back(std::move(found));
+    }
+    return modules;
+}
+
+std::vector<MappedMemory> mapped_memory() {
+    std::vector<MappedMemory> pieces;
+    vm_address_t address = 0;
+    for (natural_t depth = 0;;) {
+        vm_size_t bytes = 0;
+        vm_region_submap_info_data_64_t info = {};
+        mach_msg_type_number_t count = VM_REGION_SUBMAP_INFO_COUNT_64;
+        if (vm_region_recurse_64(mach_task_self(), &address, &bytes, &depth,
+                                 reinterpret_cast<vm_region_recurse_info_t>(&info), &count) != KERN_SUCCESS) {
+            return pieces;
+        }
+        if (info.is_submap != 0) {
+            ++depth;
+            continue;
+        }
+        if (info.protection != VM_PROT_NONE) {
+            pieces.push_back({.begin = address, .end = address + bytes});
+        }
+        address += bytes;
+    }
+}
+
+#endif
+
+LoadedModule const* module_at(std::vector<LoadedModule> const& modules, void const* place) {
+    auto const address = reinterpret_cast<std::uint64_t>(place);
+    auto const found = std::ranges::find_if(
+        modules, [address](LoadedModule const& module) { return address >= module.begin && address < module.end; });
+    return found == modules.end() ? nullptr : &*found;
 }
 
 }  // namespace pogosim

@@ -14,7 +14,7 @@ struct LoadedModule {
     std::string build;  // which of the files with this name it is: the build id, or where there is none, its size
 };
 
-/// All of this process. Empty on systems other than Linux.
+/// All of this process.
 std::vector<LoadedModule> loaded_modules();
 
 /// The one that contains a place; null: none does.
@@ -27,7 +27,7 @@ struct MappedMemory {
     bool is_heap = false;
 };
 
-/// All pieces of this process, in order. None on systems other than Linux.
+/// All pieces of this process, in order.
 std::vector<MappedMemory> mapped_memory();
 
 }  // namespace pogosim

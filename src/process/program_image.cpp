@@ -24,7 +24,11 @@
 #include "base/floating_point.hpp"
 #include "pogosim/version.h"
 #include "process/constructors.hpp"
+#ifdef __linux__
 #include "process/elf_file.hpp"
+#else
+#include "process/mach_o_symbols.hpp"
+#endif
 
 namespace pogosim {
 
@@ -93,8 +97,6 @@ void unload(void* library) {
     dlclose(library);
 }
 
-#ifdef __linux__
-
 std::vector<char> content_of(std::filesystem::path const& file) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) {
@@ -106,6 +108,8 @@ std::vector<char> content_of(std::filesystem::path const& file) {
     }
     return *std::move(content);
 }
+
+#ifdef __linux__
 
 /// The reason why a file cannot be loaded; empty: there is none.
 std::string problem_of(std::vector<char> const& bytes) {
@@ -206,16 +210,28 @@ Copy load_copy(std::filesystem::path const& file) {
 
 struct Copy {
     std::shared_ptr<void> library;
-    std::shared_ptr<ProgramSymbols const> symbols = std::make_shared<ProgramSymbols const>();
+    std::shared_ptr<ProgramSymbols const> symbols;
 };
 
+/// The dynamic linker takes a file of another name for a new one.
 Copy load_copy(std::filesystem::path const& file) {
+    std::vector<char> const bytes = content_of(file);
+    if (std::string const problem = problem_of_mach_o(bytes); !problem.empty()) {
+        fail(file, problem);
+    }
     static std::atomic<unsigned> copies = 0;
+    unsigned const number = copies++;
+    if (auto const shared = mach_o_variables_of_all_copies(bytes); number > 0 && !shared.empty()) {
+        fail(file,
+             fmt::format("has variables of inline functions or templates, such as '{}', which on this system are one "
+                         "for all runs of a process: make them static, or run it in a process of its own",
+                         name_by_symbol(shared.front())));
+    }
     std::error_code error;
     std::filesystem::path const copy =
-        std::filesystem::temp_directory_path(error) / fmt::format("pogosim-{}-{}.so", getpid(), copies++);
+        std::filesystem::temp_directory_path(error) / fmt::format("pogosim-{}-{}.so", getpid(), number);
     if (error || !std::filesystem::copy_file(file, copy, error)) {
-        fail(file, fmt::format("cannot be read: {}", error.message()));
+        fail(file, fmt::format("cannot be copied to the folder for temporary files: {}", error.message()));
     }
     void* const handle = loaded(copy);
     std::string const problem = handle == nullptr ? dlerror() : "";
@@ -223,7 +239,7 @@ Copy load_copy(std::filesystem::path const& file) {
     if (handle == nullptr) {
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {.library = {handle, unload}};
+    return {.library = {handle, unload}, .symbols = std::make_shared<ProgramSymbols const>(symbols_of(bytes))};
 }
 
 #endif
@@ -253,7 +269,7 @@ ProgramImage linked_program(pogosim_program const& program, std::string name) {
     image.plain_mydata = is_in_any(image.variables, given_mydata) ? given_mydata : nullptr;
     image.constructors = constructors_of(program);
     // One of its files may include pogobot.h, and the one with main() pogobase.h.
-    image.is_for_sdk = program.for_sdk != nullptr && image.user_data_bytes == 0;
+    image.is_for_sdk = program.for_sdk != nullptr && *program.for_sdk != 0 && image.user_data_bytes == 0;
     return image;
 }
 

@@ -12,6 +12,7 @@
 
 #include "pogosim/program.h"
 #include "process/constructors.hpp"
+#include "process/own_executable.hpp"
 #include "process/program_symbols.hpp"
 
 namespace pogosim {
@@ -27,7 +28,7 @@ struct ProgramImage {
     bool is_for_sdk = false;                                 // its main() does not return
     std::shared_ptr<void> loaded{};                          // keeps a loaded program in memory; null: it is linked in
     std::uintptr_t load_address = 0;                         // of what its file says
-    std::filesystem::path file = "/proc/self/exe";           // that it was read from
+    std::filesystem::path file = own_executable();           // that it was read from
     std::filesystem::file_time_type file_time{};             // when it was written; none: it is the one that runs
     std::shared_ptr<ProgramSymbols const> loaded_symbols{};  // of a loaded program
 

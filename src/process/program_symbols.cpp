@@ -10,7 +10,11 @@
 #include <string_view>
 #include <utility>
 
+#ifdef __linux__
 #include "process/elf_file.hpp"
+#else
+#include "process/mach_o_symbols.hpp"
+#endif
 
 namespace pogosim {
 
@@ -44,6 +48,21 @@ std::string ProgramFunction::name() const {
     std::string const written = name_by_symbol(symbol);
     std::size_t const parameters = written.find('(', written.starts_with('(') ? 1 : 0);  // "(anonymous namespace)::f()"
     return written.substr(0, parameters);
+}
+
+std::string allocating_conversion(std::string_view bytes) {
+    constexpr std::string_view kDigits = "0123456789$\'";
+    for (std::size_t at = bytes.find('%'); at != std::string_view::npos; at = bytes.find('%', at + 1)) {
+        std::size_t const letter = bytes.find_first_not_of(kDigits, at + 1);
+        if (letter == std::string_view::npos || (bytes[letter] != 'm' && bytes[letter] != 'a')) {
+            continue;
+        }
+        std::size_t const kind = bytes.find_first_not_of('l', letter + 1);
+        if (kind != std::string_view::npos && std::string_view("sScC[").find(bytes[kind]) != std::string_view::npos) {
+            return std::string(bytes.substr(at, kind + 1 - at));
+        }
+    }
+    return "";
 }
 
 #ifdef __linux__
@@ -126,23 +145,7 @@ bool is_static_of_every_program(Elf64_Sym const& symbol, std::string_view name) 
            name.starts_with("before_constructors");
 }
 
-/// The first conversion of sscanf() that allocates a text: "%ms", "%2$16mc", "%m[", or "%as" of old C.
-std::string allocating_conversion(std::string_view bytes) {
-    constexpr std::string_view kDigits = "0123456789$\'";
-    for (std::size_t at = bytes.find('%'); at != std::string_view::npos; at = bytes.find('%', at + 1)) {
-        std::size_t const letter = bytes.find_first_not_of(kDigits, at + 1);
-        if (letter == std::string_view::npos || (bytes[letter] != 'm' && bytes[letter] != 'a')) {
-            continue;
-        }
-        std::size_t const kind = bytes.find_first_not_of('l', letter + 1);
-        if (kind != std::string_view::npos && std::string_view("sScC[").find(bytes[kind]) != std::string_view::npos) {
-            return std::string(bytes.substr(at, kind + 1 - at));
-        }
-    }
-    return "";
-}
-
-/// The same among the texts of a program, which are neither code nor of the linker.
+/// The first conversion of that kind among the texts of a program, which are neither code nor of the linker.
 std::string allocating_format(ElfFile const& file) {
     for (Elf64_Shdr const& section : file.sections) {
         bool const may_have_texts = section.sh_type == SHT_PROGBITS && (section.sh_flags & SHF_ALLOC) != 0 &&
@@ -283,18 +286,41 @@ std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
     return found;
 }
 
+std::vector<std::string> texts_of(std::span<char const> bytes, std::string_view part_of_name) {
+    ElfFile const file = elf_file(bytes);
+    std::vector<std::string> found;
+    for (Elf64_Shdr const& table : file.sections) {
+        if (table.sh_type != SHT_SYMTAB) {
+            continue;
+        }
+        for_each_symbol(file, table, [&](Elf64_Sym const& symbol, std::string_view name) {
+            if (symbol.st_shndx < file.sections.size() && name.find(part_of_name) != std::string_view::npos) {
+                Elf64_Shdr const& section = file.sections[symbol.st_shndx];
+                std::span const text = elf_array<char>(
+                    file.bytes, section.sh_offset + (symbol.st_value - section.sh_addr), symbol.st_size);
+                found.emplace_back(text.begin(), std::ranges::find(text, '\0'));
+            }
+        });
+    }
+    return found;
+}
+
 #else
 
-ProgramSymbols symbols_of(std::span<char const> /*bytes*/) {
-    return {};
+ProgramSymbols symbols_of(std::span<char const> bytes) {
+    return mach_o_symbols(bytes);
 }
 
-std::vector<ProgramFunction> functions_of(std::span<char const> /*bytes*/) {
-    return {};
+std::vector<ProgramFunction> functions_of(std::span<char const> bytes) {
+    return mach_o_functions(bytes);
 }
 
-std::string function_at(std::span<char const> /*bytes*/, std::uintptr_t /*address*/) {
-    return "";
+std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
+    return mach_o_function_at(bytes, address);
+}
+
+std::vector<std::string> texts_of(std::span<char const> bytes, std::string_view part_of_name) {
+    return mach_o_texts(bytes, part_of_name);
 }
 
 #endif

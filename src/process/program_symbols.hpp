@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pogosim {
@@ -41,6 +42,9 @@ struct ProgramSymbols {
 /// (clang), "name()::n" for "_ZZ4namevE1n" (C++).
 std::string name_by_symbol(std::string const& symbol);
 
+/// The first conversion of sscanf() that allocates a text: "%ms", "%2$16mc", "%m[", or "%as" of old C; empty: none.
+std::string allocating_conversion(std::string_view bytes);
+
 /// `file`: the bytes of an executable or a shared object, which need not be well-formed.
 ProgramSymbols symbols_of(std::span<char const> file);
 
@@ -56,5 +60,8 @@ std::vector<ProgramFunction> functions_of(std::span<char const> file);
 
 /// The function with this address, from where the program is loaded, as the linker knows it; empty: there is none.
 std::string function_at(std::span<char const> file, std::uintptr_t address);
+
+/// The texts that are in constants whose symbols have these words in their names.
+std::vector<std::string> texts_of(std::span<char const> file, std::string_view part_of_name);
 
 }  // namespace pogosim

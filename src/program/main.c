@@ -5,6 +5,7 @@
 __attribute__((constructor(101))) static void guard_process(void) {
     pogosim_guard_process();
 }
+POGO_OWN_INITIALIZER(guard_process)
 
 int main(int argc, char** argv) {
     return pogosim_run_program(&pogosim_this_program, argc, argv);

@@ -7,12 +7,26 @@
 
 int robot_main(void);
 
-// Defined here for programs without REGISTER_USERDATA.
-__attribute__((weak)) size_t UserdataSize = 0;
-__attribute__((weak)) void (*UserdataConstruct)(void*) = NULL;
+// Functions and variables of the program alone: what others have by these names is another matter.
+#define POGO_WITHIN_PROGRAM __attribute__((visibility("hidden")))
+// Weak definitions of macOS would be one for all programs in a process.
+#ifdef __APPLE__
+#define POGO_UNLESS_DEFINED __attribute__((weak)) POGO_WITHIN_PROGRAM
+#else
+#define POGO_UNLESS_DEFINED __attribute__((weak))
+#endif
 
-// Defined here for all programs but those written for the robots' SDK, see pogobot.h.
+// For programs without REGISTER_USERDATA.
+POGO_UNLESS_DEFINED size_t UserdataSize = 0;
+POGO_UNLESS_DEFINED void (*UserdataConstruct)(void*) = NULL;
+
+// Defined in programs written for the robots' SDK, see pogobot.h.
+#ifdef __APPLE__  // where the linker wants a definition
+extern char const pogosim_is_for_sdk;
+POGO_UNLESS_DEFINED char const pogosim_is_for_sdk = 0;
+#else
 extern char const pogosim_is_for_sdk __attribute__((weak));
+#endif
 
 struct pogosim_program const pogosim_this_program = {
     .interface_version = POGOSIM_VERSION_COMPILED,
@@ -24,7 +38,6 @@ struct pogosim_program const pogosim_this_program = {
 
 // Functions of the C library that are the robot's own. Defined within the program, and seen only there, they are the
 // ones that its code calls, whatever process it is loaded into.
-#define POGO_WITHIN_PROGRAM __attribute__((visibility("hidden")))
 
 POGO_WITHIN_PROGRAM int rand(void) {
     return pogosim_rand();
@@ -56,6 +69,11 @@ __attribute__((constructor(102))) static void before_constructors(void) {
     pogosim_srand(1);  // what constructors draw is the same each time that a process loads the program
     pogosim_before_constructors(&pogosim_this_program, before_constructors);
 }
+POGO_OWN_INITIALIZER(before_constructors)
+#ifdef __APPLE__  // how the simulator knows a program when it is loaded
+__attribute__((used, section("__DATA,pogo_program"))) static struct pogosim_program const* const this_program =
+    &pogosim_this_program;
+#endif
 
 POGO_WITHIN_PROGRAM void exit(int status) {
     pogosim_exit(status);

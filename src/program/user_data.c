@@ -9,3 +9,4 @@ POGO_SHARED void* mydata = NULL;
 __attribute__((constructor(101))) static void give_mydata(void) {
     pogosim_give_mydata(&mydata);
 }
+POGO_OWN_INITIALIZER(give_mydata)

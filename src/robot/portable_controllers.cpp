@@ -99,11 +99,7 @@ std::string Controllers::why_never_portable() const {
     if (image_.is_for_sdk) {
         return "its robots wait in the middle of main() (pogobot.h), on stacks that only this process has";
     }
-#ifndef __linux__
-    return "this system does not tell where a program and its libraries are in memory";
-#else
     return "";
-#endif
 }
 
 /// Where the program has its variables: without those of the linker, which are of this process.

@@ -13,10 +13,8 @@
 #include "base/counted.hpp"
 #include "base/log.hpp"
 #include "base/nearest_name.hpp"
+#include "process/sanitizer_functions.hpp"
 #include "robot/call_checks.hpp"
-
-// The run-time library of clang's sanitizers is a part of the program.
-extern "C" [[gnu::weak]] void __asan_init();
 
 namespace pogosim {
 

@@ -17,11 +17,15 @@ namespace {
 // Functions of the C and C++ libraries whose results do not depend on the caller or the order of calls, and that are
 // safe on several threads. Not among them: strtok(), which remembers a text; fopen() and fprintf(), whose output would
 // come in another order.
-constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
+constexpr std::array kHarmless{"_DefaultRuneLocale"sv,
+                               "_ITM_deregisterTMCloneTable"sv,
                                "_ITM_registerTMCloneTable"sv,
                                "_Unwind_Resume"sv,
                                "_ZSt9terminatev"sv,
+                               "___chkstk_darwin"sv,
                                "__assert_fail"sv,
+                               "__assert_rtn"sv,
+                               "__bzero"sv,
                                "__ctype_b_loc"sv,
                                "__ctype_tolower_loc"sv,
                                "__ctype_toupper_loc"sv,
@@ -29,7 +33,11 @@ constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
                                "__gxx_personality_v0"sv,
                                "__isoc99_sscanf"sv,
                                "__libc_start_main"sv,
+                               "__maskrune"sv,
                                "__stack_chk_fail"sv,
+                               "__stack_chk_guard"sv,
+                               "__tolower"sv,
+                               "__toupper"sv,
                                "abort"sv,
                                "abs"sv,
                                "aligned_alloc"sv,
@@ -38,6 +46,7 @@ constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
                                "atol"sv,
                                "bcmp"sv,
                                "bsearch"sv,
+                               "bzero"sv,
                                "calloc"sv,
                                "div"sv,
                                "free"sv,
@@ -53,6 +62,9 @@ constexpr std::array kHarmless{"_ITM_deregisterTMCloneTable"sv,
                                "memcpy"sv,
                                "memmove"sv,
                                "memset"sv,
+                               "memset_pattern16"sv,
+                               "memset_pattern4"sv,
+                               "memset_pattern8"sv,
                                "pogosim_is_for_sdk"sv,
                                "qsort"sv,
                                "realloc"sv,
@@ -202,7 +214,8 @@ bool is_of_simulator_or_mathematical(std::string const& name) {
     NamedObject const object = object_of(library != nullptr ? dlsym(library, name.c_str()) : nullptr);
     return object.begin != nullptr &&
            (object.begin == simulator().begin || object.file.find("/libm.so") != std::string_view::npos ||
-            object.file.find("/libm-") != std::string_view::npos);
+            object.file.find("/libm-") != std::string_view::npos ||
+            object.file.find("/libsystem_m.") != std::string_view::npos);
 }
 
 bool is_own(std::string_view name) {
@@ -307,11 +320,10 @@ std::string why_state_is_not_copied(ProgramImage const& image) {
 }
 
 std::string why_run_is_not_repeated(ProgramImage const& image) {
-    constexpr std::size_t kCompilersOwn = 1;  // in C as well, which does nothing
     if (image.constructors) {
         return "the program has functions that run before its main(), such as constructors of static objects";
     }
-    if (loaded_object_at(reinterpret_cast<void const*>(image.main)).finalizers.size() > kCompilersOwn) {
+    if (loaded_object_at(reinterpret_cast<void const*>(image.main)).finalizers.size() > kFunctionsOfCompiler) {
         return "the program has functions that run at its end";
     }
     std::vector<std::string> const imports = image.symbols().imports;

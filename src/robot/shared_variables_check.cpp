@@ -14,7 +14,6 @@
 
 #include "base/escaped.hpp"
 #include "base/log.hpp"
-#include "process/elf_file.hpp"
 #include "process/process.hpp"
 #include "robot/shared_state.hpp"
 
@@ -46,42 +45,10 @@ bool is_new(ProgramImage const& image) {
     return known.emplace(image.file, image.file_time).second;
 }
 
-#ifdef __linux__
-
 /// What calls of init_from_configuration() have left in the program (POGO_NOTE_CONFIGURED): "gain", "&limits.low".
 std::vector<std::string> configured_expressions(ProgramImage const& image) {
-    std::vector<char> const bytes = image.bytes_of_file();
-    ElfFile const file = elf_file(bytes);
-    std::vector<std::string> found;
-    for (Elf64_Shdr const& table : file.sections) {
-        if (table.sh_type != SHT_SYMTAB || table.sh_link >= file.sections.size()) {
-            continue;
-        }
-        Elf64_Shdr const& names = file.sections[table.sh_link];
-        std::span const texts = elf_array<char>(file.bytes, names.sh_offset, names.sh_size);
-        for (Elf64_Sym const& symbol : elf_symbols(file, table)) {
-            if (symbol.st_name >= texts.size() || symbol.st_shndx >= file.sections.size()) {
-                continue;
-            }
-            std::string_view const rest(texts.data() + symbol.st_name, texts.size() - symbol.st_name);
-            if (rest.substr(0, rest.find('\0')).find("pogosim_configured") != std::string_view::npos) {
-                Elf64_Shdr const& section = file.sections[symbol.st_shndx];
-                std::span const text = elf_array<char>(
-                    file.bytes, section.sh_offset + (symbol.st_value - section.sh_addr), symbol.st_size);
-                found.emplace_back(text.begin(), std::ranges::find(text, '\0'));
-            }
-        }
-    }
-    return found;
+    return texts_of(image.bytes_of_file(), "pogosim_configured");
 }
-
-#else
-
-std::vector<std::string> configured_expressions(ProgramImage const& /*image*/) {
-    return {};
-}
-
-#endif
 
 /// Whether an expression contains this word.
 bool mentions(std::string_view expression, std::string_view word) {
