@@ -3,9 +3,7 @@
 set -euo pipefail
 
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
-table=$here/table.txt
-scripts=/usr/share/debootstrap/scripts
-names=$(awk '!/^#/ { print "  " $1 }' "$table")
+. "$here/machine.sh"
 usage="Usage, as root, with debootstrap installed: tests/distributions/run.sh NAME [--quick] [--roots FOLDER]
 
 Makes a bare machine, copies the files of this tree to it (also those that are not committed), and runs there ./demo.sh, a
@@ -38,8 +36,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 [ -n "$name" ] || { echo "$usage" >&2 && exit 2; }
-read -r suite script components < <(awk -v name="$name" '$1 == name && !/^#/ { print $2, $3, $4 }' "$table") ||
-    refuse "unknown distribution \"$name\"; expected one of:"$'\n'"$names"
+describe "$name" || refuse "unknown distribution \"$name\"; expected one of:"$'\n'"$names"
 [ "$(id -u)" -eq 0 ] || refuse "only root can make machines: sudo tests/distributions/run.sh $name"
 command -v debootstrap >/dev/null || refuse "debootstrap is not installed: sudo apt install debootstrap"
 
@@ -57,19 +54,12 @@ if [ -f "$roots/$name.tar" ]; then
     tar -C "$machine" --numeric-owner -xf "$roots/$name.tar"
 else
     say "A bare machine"
-    # An empty mirror means the usual one; without the keys of the distribution, debootstrap would take Debian's.
-    keys=$(sed -n 's/^ *keyring //p' "$scripts/$script" | head -n 1)
-    [ -f "$keys" ] || say "Signatures are not checked while it is made: there is no $keys"
-    debootstrap $([ -f "$keys" ] || echo --no-check-gpg) --variant=minbase --components="$components" \
-        "$suite" "$machine" "" "$scripts/$script" >"$roots/$name.log" || { tail -n 20 "$roots/$name.log" >&2 && exit 1; }
+    make_machine "$machine" "$roots/$name.log"
     tar -C "$machine" --numeric-owner --one-file-system -cf "$machine.tar" .
     mv "$machine.tar" "$roots/$name.tar"
 fi
 
-# How this machine reaches the network: names of hosts, its own certificates, settings of pip.
-for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /usr/local/share/ca-certificates; do
-    [ ! -e "$file" ] || cp -rL "$file" "$machine${file%/*}/"
-done
+let_reach_the_network "$machine"
 
 say "The files of this tree"
 mkdir "$machine/root/pogosim"

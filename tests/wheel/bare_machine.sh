@@ -1,28 +1,49 @@
 #!/usr/bin/env bash
-# Tries a wheel on a bare machine: a fresh Debian in a folder, with nothing but Python, a C compiler and make, as a user who is
-# not root and has no network. Needs root and debootstrap; takes about three minutes; leaves nothing behind.
-#
-#   ./scripts/make_wheel.sh && sudo tests/wheel/bare_machine.sh dist/pogobot_simulator-*.whl
+# Tries a wheel on a bare machine: a fresh distribution in a folder, with nothing but Python, a C compiler and make, as a user
+# who is not root and has no network.
 set -euo pipefail
 
-if [ $# -ne 1 ] || [ ! -f "$1" ] || [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
-    echo "Usage, as root, with debootstrap installed: tests/wheel/bare_machine.sh WHEEL" >&2
-    exit 2
-fi
+here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
+. "$here/../distributions/machine.sh"
+usage="Usage, as root, with debootstrap installed: tests/wheel/bare_machine.sh WHEEL [NAME]
 
+NAME (debian-12) is one of tests/distributions/table.txt with Python 3.10 or later. A wheel for ARM64 is tried on a machine for
+that, which this one must be able to run: on x86-64, install qemu-user-static and binfmt-support. Takes a few minutes, more on
+an emulated processor; leaves nothing behind."
+
+refuse() { echo "bare_machine.sh: $1" >&2 && exit 2; }
+
+case ${1:-} in "" | -h | --help) echo "$usage" && exit 0 ;; esac
+[ $# -le 2 ] || refuse "expected a wheel and a name, found $# words"
 wheel=$(realpath "$1")
+[ -f "$wheel" ] || refuse "there is no file $1"
+name=${2:-debian-12}
+describe "$name" || refuse "unknown distribution \"$name\"; expected one of:"$'\n'"$names"
+case $wheel in
+    *-manylinux*x86_64.whl) processor=amd64 platform=manylinux_2_28_x86_64 ;;
+    *-manylinux*aarch64.whl) processor=arm64 platform=manylinux_2_28_aarch64 ;;
+    *) refuse "$1 is no wheel for Linux on x86_64 or aarch64, by its name" ;;
+esac
+[ "$(id -u)" -eq 0 ] || refuse "only root can make machines"
+command -v debootstrap >/dev/null || refuse "debootstrap is not installed: sudo apt install debootstrap"
+
 machine=$(mktemp -d)
 chmod 755 "$machine"
 # Only plain files are below: what is mounted disappears with its namespace.
-trap 'rm -rf --one-file-system "$machine"' EXIT
+trap 'rm -rf --one-file-system "$machine" "$machine.log"' EXIT
 
-echo "==> A fresh Debian with Python, gcc and make"
-debootstrap --variant=minbase --include=python3,python3-venv,gcc,libc6-dev,make bookworm "$machine" >/dev/null
+echo "==> $name with Python, gcc and make, for $processor"
+make_machine "$machine" "$machine.log" --arch="$processor" --include=python3,python3-venv,gcc,libc6-dev,make
 
 echo "==> The wheel, and those it requires"
+version=$(chroot "$machine" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 python3 -m venv "$machine/download"
-"$machine/download/bin/pip" download --quiet --disable-pip-version-check --only-binary :all: --python-version 3.11 \
-    --dest "$machine/wheels" "$wheel"
+mkdir "$machine/wheels"
+cp "$wheel" "$machine/wheels"
+older=()  # a machine for one platform takes what is for older ones; pip must be told of each
+for minor in 28 27 26 24 17; do older+=(--platform "${platform/_2_28_/_2_${minor}_}"); done
+"$machine/download/bin/pip" download --quiet --disable-pip-version-check --only-binary :all: --python-version "$version" \
+    "${older[@]}" --platform "manylinux2014_${platform#manylinux_2_28_}" --dest "$machine/wheels" "$wheel"
 rm -r "$machine/download"
 
 cat >"$machine/as_a_user.sh" <<'USER'
@@ -31,12 +52,13 @@ cd ~
 python3 -m venv env
 . env/bin/activate
 pip install --quiet --disable-pip-version-check --no-index --find-links /wheels pogobot-simulator
+pogosim --version
 pogosim new first
 cd first
 make sim
 ./first -c conf/test.yaml -g -q
 pogosim picture frames/data.feather swarm.png
-SDL_VIDEODRIVER=dummy ./first -c conf/test.yaml -q --set simulation_time=2 | tee window.txt
+SDL_VIDEODRIVER=dummy ./first -c conf/test.yaml -q --close-at-end --set simulation_time=2 | tee window.txt
 [ ! -s window.txt ]  # no warning that the window cannot be opened
 ./first -c conf/test.yaml -g -q --set simulation_time=2 --set save_video_period=1 --set 'frames_name=frames/f{:05.0f}.png'
 pogobatch -c conf/test.yaml -S ./first -r 2 -o results
@@ -47,6 +69,9 @@ USER
 
 echo "==> As a user there"
 useradd --root "$machine" --create-home --shell /bin/bash user
-unshare --mount --net --pid --fork --mount-proc="$machine/proc" \
-    chroot --userspec=user:user "$machine" env -i HOME=/home/user PATH=/usr/bin:/bin LANG=C.UTF-8 bash /as_a_user.sh
-echo "==> The wheel works on a bare machine"
+# shellcheck disable=SC2016 # for the shell inside
+unshare --mount --net --pid --fork --kill-child bash -euc '
+    mount -t proc proc "$1/proc"
+    exec chroot --userspec=user:user "$1" env -i HOME=/home/user PATH=/usr/bin:/bin LANG=C.UTF-8 bash /as_a_user.sh
+    ' bash "$machine"
+echo "==> The wheel works on $name"

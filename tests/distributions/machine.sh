@@ -1,0 +1,33 @@
+# Makes bare machines, for scripts that source this file: a fresh distribution in a folder, with nothing installed.
+#
+#   describe NAME                        # sets suite, script and components of a name of table.txt; fails if there is none
+#   make_machine FOLDER LOG [OPTIONS]    # makes it in an empty folder, by debootstrap, with more options for that
+#   let_reach_the_network FOLDER         # the machine gets what this one needs for that
+# shellcheck shell=bash disable=SC2034 # variables are for the scripts
+
+table=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/table.txt
+names=$(awk '!/^#/ { print "  " $1 }' "$table")
+
+describe() {
+    read -r suite script components < <(awk -v name="$1" '$1 == name && !/^#/ { print $2, $3, $4 }' "$table")
+}
+
+make_machine() {
+    local folder=$1 log=$2 scripts=/usr/share/debootstrap/scripts keys check=""
+    shift 2
+    # An empty mirror means the usual one; without the keys of the distribution, debootstrap would take Debian's.
+    keys=$(sed -n 's/^ *keyring //p' "$scripts/$script" | head -n 1)
+    if [ ! -f "$keys" ]; then
+        echo "Signatures are not checked while it is made: there is no $keys"
+        check=--no-check-gpg
+    fi
+    debootstrap $check --variant=minbase --components="$components" "$@" "$suite" "$folder" "" "$scripts/$script" >"$log" ||
+        { tail -n 20 "$log" >&2 && return 1; }
+}
+
+let_reach_the_network() {  # names of hosts, this machine's own certificates, settings of pip
+    local file
+    for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /usr/local/share/ca-certificates; do
+        [ ! -e "$file" ] || cp -rL "$file" "$1${file%/*}/"
+    done
+}
