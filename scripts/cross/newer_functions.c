@@ -16,7 +16,7 @@
 // Not for other modules.
 #define OWN __attribute__((visibility("hidden")))
 
-// glibc 2.32: whether a process has never had a second thread. "No" is always true enough: atomic operations stay atomic.
+// glibc 2.32: whether a process has never had a second thread. 0 is always safe: the C++ library uses atomic operations then.
 OWN char __libc_single_threaded = 0;
 
 // glibc 2.33: until then, headers made calls of these functions with the layout's version of struct stat.
@@ -59,21 +59,25 @@ OWN int renameat2(int old_folder, char const* old_path, int new_folder, char con
     return (int)syscall(SYS_renameat2, old_folder, old_path, new_folder, new_path, flags);
 }
 
-// A function of the machine's library, if that is new enough; null otherwise.
-static void* of_this_machine(char const* name) {
-    return dlsym(RTLD_DEFAULT, name);
-}
+// newer_NAME is the function of the machine's library, if that is new enough, else null. It is looked up before all else,
+// since some of these are called by handlers of signals, or often.
+#define NEWER(result, name, ...)                                      \
+    static result (*newer_##name)(__VA_ARGS__);                       \
+    __attribute__((constructor(101))) static void find_##name(void) { \
+        void* const found = dlsym(RTLD_DEFAULT, #name);               \
+        memcpy(&newer_##name, &found, sizeof found);                  \
+    }
+NEWER(struct mallinfo2, mallinfo2, void)
+NEWER(pid_t, _Fork, void)
+NEWER(int, pthread_cond_clockwait, pthread_cond_t*, pthread_mutex_t*, clockid_t, struct timespec const*)
 
 // glibc 2.33: the older function counts bytes in an int. Its values are right modulo 4 GiB.
 OWN struct mallinfo2 mallinfo2(void) {
+    if (newer_mallinfo2 != NULL) {
+        return newer_mallinfo2();
+    }
     struct mallinfo2 result;
     memset(&result, 0, sizeof result);
-    struct mallinfo2 (*newer)(void) = NULL;
-    void* const found = of_this_machine("mallinfo2");
-    memcpy(&newer, &found, sizeof newer);
-    if (newer != NULL) {
-        return newer();
-    }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"
     struct mallinfo const older = mallinfo();
@@ -85,24 +89,18 @@ OWN struct mallinfo2 mallinfo2(void) {
     return result;
 }
 
-// glibc 2.34: fork() without the functions of pthread_atfork(), which older libraries cannot leave out. Its other name: a
-// library may have a fork() of its own, which calls this.
+// glibc 2.34: fork() without the functions of pthread_atfork(). Older libraries always call them. __fork(), since our library
+// replaces fork().
 pid_t __fork(void);
 OWN pid_t _Fork(void) {
-    pid_t (*newer)(void) = NULL;
-    void* const found = of_this_machine("_Fork");
-    memcpy(&newer, &found, sizeof newer);
-    return newer != NULL ? newer() : __fork();
+    return newer__Fork != NULL ? newer__Fork() : __fork();
 }
 
 // glibc 2.30: waits until a time of a clock. Older ones know the clock of the condition only, here that of the day.
 OWN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
                                struct timespec const* until) {
-    int (*newer)(pthread_cond_t*, pthread_mutex_t*, clockid_t, struct timespec const*) = NULL;
-    void* const found = of_this_machine("pthread_cond_clockwait");
-    memcpy(&newer, &found, sizeof newer);
-    if (newer != NULL) {
-        return newer(condition, mutex, clock, until);
+    if (newer_pthread_cond_clockwait != NULL) {
+        return newer_pthread_cond_clockwait(condition, mutex, clock, until);
     }
     long const second_ns = 1000000000L;
     struct timespec now;

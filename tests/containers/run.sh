@@ -60,7 +60,7 @@ say "The image"
 buildah "${images[@]}" bud --quiet --isolation chroot --build-arg BASE=localhost/debian --build-arg PIP_NO_INDEX=1 \
     --build-arg VERSION="$version" -t pogosim -f "$project/containers/Containerfile" "$folder/dist" >/dev/null
 mkdir -m 777 "$folder/project"
-in_image -v "$folder/project:/project" -v "$project/tests/containers/first_steps.sh:/first_steps.sh:ro" pogosim /first_steps.sh
+in_image -v "$folder/project:/project" -v "$project/tests/first_steps.sh:/first_steps.sh:ro" pogosim /first_steps.sh
 mkdir "$folder/of_another_user"
 chown 4242:4242 "$folder/of_another_user"
 in_image --user 4242:4242 -v "$folder/of_another_user:/project" pogosim pogosim new first
@@ -78,7 +78,7 @@ for tool in environment-modules lmod; do
     in_container "$container" env -i HOME=/tmp PATH=/usr/bin:/bin MODULEPATH=/opt/modulefiles bash -c "
         set -e
         . $init
-        ! command -v pogosim
+        if command -v pogosim; then exit 1; fi
         module load pogosim/$version
         pogosim new /tmp/first
         cd /tmp/first
@@ -87,7 +87,7 @@ for tool in environment-modules lmod; do
         ./first -c conf/test.yaml -g -q --set simulation_time=1
         [ -s frames/data.feather ]
         module unload pogosim
-        ! command -v pogosim"
+        if command -v pogosim; then exit 1; fi"
 done
 
 say "The recipe of EasyBuild, in the container with Lmod"
@@ -135,5 +135,5 @@ as_a_user sh -c 'cd /project && exec apptainer -q build --fakeroot --disable-cac
     exit 1
 }
 as_a_user sh -c 'cd /here/shared && exec apptainer -q exec --bind /here --bind /project pogosim.sif \
-    /project/tests/containers/first_steps.sh'
+    /project/tests/first_steps.sh'
 say "Containers and modules work"

@@ -18,7 +18,11 @@ make_machine() {
     # An empty mirror means the usual one; without the keys of the distribution, debootstrap would take Debian's.
     keys=$(sed -n 's/^ *keyring //p' "$scripts/$script" | head -n 1)
     if [ ! -f "$keys" ]; then
-        echo "Signatures are not checked while it is made: there is no $keys"
+        [ "${POGOSIM_UNSIGNED:-}" = yes ] || {
+            echo "The keys of $suite are not there, $keys: install the distribution's package of them, or take what comes without
+a check of its signatures: POGOSIM_UNSIGNED=yes" >&2
+            return 1
+        }
         check=--no-check-gpg
     fi
     debootstrap $check --variant=minbase --components="$components" "$@" "$suite" "$folder" "" "$scripts/$script" >"$log" ||

@@ -78,7 +78,7 @@ int main(int count, char** words) {
     int const result = pthread_cond_clockwait(&condition, &mutex, CLOCK_MONOTONIC, &until);
     clock_gettime(CLOCK_MONOTONIC, &end);
     double const waited = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-    printf("%d %d ", result == ETIMEDOUT, waited >= 0.029 && waited < 5.0);
+    printf("%d %d ", result == ETIMEDOUT, waited >= 0.029);
     size_t const before = mallinfo2().uordblks;
     char* const block = malloc(100000);
     block[0] = 1;

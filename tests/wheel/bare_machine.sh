@@ -13,8 +13,8 @@ an emulated processor; leaves nothing behind."
 
 refuse() { echo "bare_machine.sh: $1" >&2 && exit 2; }
 
-case ${1:-} in "" | -h | --help) echo "$usage" && exit 0 ;; esac
-[ $# -le 2 ] || refuse "expected a wheel and a name, found $# words"
+case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
+[ $# -eq 1 ] || [ $# -eq 2 ] || { echo "$usage" >&2 && exit 2; }
 wheel=$(realpath "$1")
 [ -f "$wheel" ] || refuse "there is no file $1"
 name=${2:-debian-12}
@@ -46,25 +46,14 @@ for minor in 28 27 26 24 17; do older+=(--platform "${platform/_2_28_/_2_${minor
     "${older[@]}" --platform "manylinux2014_${platform#manylinux_2_28_}" --dest "$machine/wheels" "$wheel"
 rm -r "$machine/download"
 
+cp "$here/../first_steps.sh" "$machine/"
 cat >"$machine/as_a_user.sh" <<'USER'
 set -eux
 cd ~
 python3 -m venv env
 . env/bin/activate
 pip install --quiet --disable-pip-version-check --no-index --find-links /wheels pogobot-simulator
-pogosim --version
-pogosim new first
-cd first
-make sim
-./first -c conf/test.yaml -g -q
-pogosim picture frames/data.feather swarm.png
-SDL_VIDEODRIVER=dummy ./first -c conf/test.yaml -q --close-at-end --set simulation_time=2 | tee window.txt
-[ ! -s window.txt ]  # no warning that the window cannot be opened
-./first -c conf/test.yaml -g -q --set simulation_time=2 --set save_video_period=1 --set 'frames_name=frames/f{:05.0f}.png'
-pogobatch -c conf/test.yaml -S ./first -r 2 -o results
-pogosim run main.c -c conf/test.yaml -g -q --set simulation_time=1
-pogosim doctor
-ls -l swarm.png frames results
+/first_steps.sh
 USER
 
 echo "==> As a user there"
