@@ -10,6 +10,10 @@
 
 set(POGOSIM_PYARROW "" CACHE PATH "Folder of an unpacked pyarrow package to use, and no other Arrow")
 if(POGOSIM_PYARROW)
+    if(NOT IS_ABSOLUTE "${POGOSIM_PYARROW}" OR NOT EXISTS "${POGOSIM_PYARROW}/include/arrow/util/config.h")
+        message(FATAL_ERROR "POGOSIM_PYARROW is ${POGOSIM_PYARROW}; expected the absolute path of the folder \"pyarrow\" of an "
+            "unpacked package of PyPI, which has include/arrow")
+    endif()
     set(Arrow_FOUND OFF)
 elseif(SKBUILD)
     set(POGOSIM_PYTHON "${Python_EXECUTABLE}")

@@ -174,9 +174,13 @@ def make_wheel(output: Path, target: str | None, with_environment: bool) -> Path
         wheel = made_for(target, folder, with_environment) if target else made_here(folder, with_environment)
         output.mkdir(parents=True, exist_ok=True)
         platform = wheel.stem.rpartition("-")[2]
+        place = output / wheel.name
+        shutil.copy(wheel, place.with_suffix(".part"))
+        place.with_suffix(".part").replace(place)
         for old in output.glob(f"{DISTRIBUTION}-*-{platform}.whl"):
-            old.unlink()
-        return Path(shutil.move(wheel, output))
+            if old != place:
+                old.unlink()
+        return place
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes a self-contained wheel of Pogosim. Installs missing dependencies first.
 set -euo pipefail
+here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage="Usage: scripts/make_wheel.sh [--for MACHINE | --here] [FOLDER]
@@ -27,7 +28,10 @@ while [ $# -gt 0 ]; do
             way=(--for "$2") && shift
             ;;
         -* | "") fail_usage ;;
-        *) [ $# -eq 1 ] || fail_usage && folder=$1 ;;
+        *)
+            [ $# -eq 1 ] || fail_usage
+            case $1 in /*) folder=$1 ;; *) folder=$here/$1 ;; esac
+            ;;
     esac
     shift
 done

@@ -74,7 +74,7 @@ def run(*words: str | Path, folder: Path = ROOT, quiet: bool = False, variables:
         words: program and arguments.
         folder: where to run it.
         quiet: without what it prints, but for errors.
-        variables: of its environment, beside what this process.
+        variables: of its environment, beside what this process has.
     """
     try:
         output = subprocess.DEVNULL if quiet else None

@@ -22,8 +22,10 @@ import argparse
 import re
 import shlex
 import subprocess
+import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 from elftools.elf.elffile import ELFFile
 
@@ -31,9 +33,16 @@ from elftools.elf.elffile import ELFFile
 NEWEST = {"GLIBC": (2, 27), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11), "GCC": (7, 0, 0)}
 STUBS = ("libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1")
 # Parts of the C library until glibc 2.34, empty since. On older machines, programs need the functions in them.
+SCRIPTS = ("libc.so", "libm.so", "libstdc++.so", "libgcc_s.so")
 FORMER_PARTS = ("libpthread.so.0", "libdl.so.2", "librt.so.1")
 # Kinds of variables in libraries: their kinds in assembly language, and the sections that they are in.
 VARIABLES = {"STT_OBJECT": ("object", ".bss"), "STT_TLS": ("tls_object", '.tbss, "awT", %nobits')}
+
+
+def fail(message: str, before: str = "") -> NoReturn:
+    """End the program with exit code 2 and one line, after what another program has said."""
+    sys.stderr.write(f"{before}old_libraries.py: {message}\n")
+    raise SystemExit(2) from None
 
 
 class Symbol(NamedTuple):
@@ -105,23 +114,32 @@ class Compiler:
     """A compiler of C++, gcc's."""
 
     def __init__(self, command: str) -> None:
-        self.command = shlex.split(command)
+        try:
+            self.command = shlex.split(command)
+        except ValueError as error:
+            fail(f"the compiler {command!r} is no command line: {error}")
+        if "clang" in command or not command.strip():
+            fail(f"the compiler is {command!r}; expected a gcc, such as aarch64-linux-gnu-g++")
 
-    def run(self, *words: str | Path) -> None:
-        """Run it; raises CalledProcessError if it fails."""
-        subprocess.run([*self.command, *words], check=True)
+    def output(self, words: Sequence[str | Path]) -> str:
+        """Return what a command prints; ends the program in one line if it fails or is not there."""
+        try:
+            result = subprocess.run(words, capture_output=True, text=True, check=False)
+        except OSError as error:
+            fail(f"cannot run {words[0]!r}: {error.strerror}")
+        if result.returncode != 0:
+            fail(f"{' '.join(map(str, words))} failed, see above", result.stderr)
+        return result.stdout.strip()
 
-    def answer(self, question: str) -> str:
-        """Return what it prints if it is called with an option."""
-        return subprocess.run([*self.command, question], check=True, capture_output=True, text=True).stdout.strip()
+    def run(self, *words: str | Path) -> str:
+        """Run it, and return what it prints; ends the program in one line if it fails."""
+        return self.output([*self.command, *words])
 
     def file(self, name: str) -> Path:
         """Return the path of one of its libraries; ends the program if it has none."""
-        path = Path(self.answer(f"-print-file-name={name}"))
+        path = Path(self.run(f"-print-file-name={name}"))
         if not path.is_absolute():
-            raise SystemExit(
-                f"old_libraries.py: {' '.join(self.command)} has no {name}; expected a gcc with its libraries"
-            )
+            fail(f"{' '.join(self.command)} has no {name}; expected a gcc with its libraries")
         return path.resolve()
 
 
@@ -143,13 +161,25 @@ def make_newer_functions(folder: Path, compiler: Compiler) -> Path:
     for name in ("newer_functions", "start_of_executable"):
         source, code = Path(__file__).with_name(f"{name}.c"), folder / f"{name}.o"
         compiler.run("-x", "c", "-O2", "-fPIC", "-Wall", "-Wextra", "-Werror", "-c", source, "-o", code)
-        subprocess.run([compiler.answer("-print-prog-name=ar"), "rc", library, code], check=True)
+        compiler.output([compiler.run("-print-prog-name=ar"), "rc", library, code])
     return library
 
 
 def make_old_libraries(folder: Path, command: str) -> None:
-    """Make all libraries in a folder, for a compiler given as the words of a command line."""
+    """Make all libraries in a folder, for a compiler given as the words of a command line.
+
+    Ends the program in one line if the compiler is none, or the folder cannot be made. The linker scripts, by which the
+    linker finds the others, come last: half a folder offers nothing.
+    """
+    if refused := sorted(set(str(folder)) & set('",')):
+        fail(f"the path {folder} has {' and '.join(refused)} in it, which linkers cannot take")
     compiler = Compiler(command)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fail(f"cannot make the folder {folder}: {error.strerror}")
+    for script in SCRIPTS:
+        (folder / script).unlink(missing_ok=True)
     for name in STUBS:
         make_stub(folder, name, exported(compiler.file(name)), compiler)
     for name in FORMER_PARTS:
@@ -158,14 +188,16 @@ def make_old_libraries(folder: Path, command: str) -> None:
     newer = make_newer_functions(stubs, compiler)
     parts = " ".join(f'"{stubs / name}"' for name in FORMER_PARTS)
     nonshared = compiler.file("libc_nonshared.a")
-    loader = next(iter(sorted(compiler.file("libc.so.6").parent.glob("ld-linux-*.so.*"))))
-    write = {
-        "libc.so": f'GROUP ( "{newer}" "{stubs}/libc.so.6" "{nonshared}" {parts} AS_NEEDED ( "{loader}" ) )',
-        "libm.so": f'INPUT ( "{stubs}/libm.so.6" )',
-        "libstdc++.so": f'INPUT ( "{stubs}/libstdc++.so.6" "{compiler.file("libstdc++.a")}" )',
-        "libgcc_s.so": f'GROUP ( "{stubs}/libgcc_s.so.1" -lgcc )',
-    }
-    for name, text in write.items():
+    loaders = sorted(compiler.file("libc.so.6").parent.glob("ld-linux-*.so.*"))
+    if not loaders:
+        fail(f"there is no ld-linux-*.so.* beside {compiler.file('libc.so.6')}")
+    texts = (
+        f'GROUP ( "{newer}" "{stubs}/libc.so.6" "{nonshared}" {parts} AS_NEEDED ( "{loaders[0]}" ) )',
+        f'INPUT ( "{stubs}/libm.so.6" )',
+        f'INPUT ( "{stubs}/libstdc++.so.6" "{compiler.file("libstdc++.a")}" )',
+        f'GROUP ( "{stubs}/libgcc_s.so.1" -lgcc )',
+    )
+    for name, text in zip(SCRIPTS, texts, strict=True):
         (folder / name).write_text(f"/* {Path(__file__).name} */\n{text}\n", encoding="utf-8")
 
 
@@ -175,6 +207,8 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="where to make them")
     parser.add_argument("--compiler", default="g++", help="compiler of C++ that will link (%(default)s)")
     options = parser.parse_args()
+    if not options.folder.name:
+        parser.error(f"the folder is {str(options.folder)!r}; expected the name of a folder of its own")
     make_old_libraries(options.folder.resolve(), options.compiler)
 
 

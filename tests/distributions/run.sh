@@ -22,7 +22,7 @@ while [ $# -gt 0 ]; do
     case $1 in
         --quick) tests=no ;;
         --roots)
-            [ $# -gt 1 ] || refuse "--roots: expected a folder after it"
+            [ -n "${2:-}" ] || refuse "--roots: expected a folder after it"
             roots=$2
             shift
             ;;

@@ -140,10 +140,22 @@ def test_new_functions_work_where_the_library_has_none(
     assert output(*runner, tmp_path / "old") == "1 -1 1 1 1 5\n"
 
 
-def test_unusual_compilers_are_named(tmp_path: Path) -> None:
-    result = subprocess.run(
-        [sys.executable, CROSS / "old_libraries.py", tmp_path, "--compiler", "echo no"],
-        capture_output=True, text=True, timeout=TIMEOUT_S, check=False,
-    )  # fmt: skip
-    assert result.returncode == 1
-    assert result.stderr == "old_libraries.py: echo no has no libc.so.6; expected a gcc with its libraries\n"
+@pytest.mark.parametrize(
+    ("folder", "compiler", "message"),
+    [
+        ("old", "echo no", "echo no has no libc.so.6; expected a gcc with its libraries"),
+        ("old", "no-such-program", "cannot run 'no-such-program': No such file or directory"),
+        ("old", "false", "false -print-file-name=libc.so.6 failed, see above"),
+        ("old", "", "the compiler is ''; expected a gcc, such as aarch64-linux-gnu-g++"),
+        ("old", "clang++", "the compiler is 'clang++'; expected a gcc, such as aarch64-linux-gnu-g++"),
+        ("old", 'g++ "', "the compiler 'g++ \"' is no command line: No closing quotation"),
+        ("a,b", "g++", "the path {folder} has , in it, which linkers cannot take"),
+        ("file", "g++", "cannot make the folder {folder}: File exists"),
+    ],
+)
+def test_mistake_is_one_line(folder: str, compiler: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    command: list[str | Path] = [sys.executable, CROSS / "old_libraries.py", tmp_path / folder, "--compiler", compiler]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    assert result.returncode == 2
+    assert result.stderr == f"old_libraries.py: {message.format(folder=tmp_path / folder)}\n"

@@ -15,8 +15,8 @@ refuse() { echo "bare_machine.sh: $1" >&2 && exit 2; }
 
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
 [ $# -eq 1 ] || [ $# -eq 2 ] || { echo "$usage" >&2 && exit 2; }
+[ -f "$1" ] || refuse "there is no file $1"
 wheel=$(realpath "$1")
-[ -f "$wheel" ] || refuse "there is no file $1"
 name=${2:-debian-12}
 describe "$name" || refuse "unknown distribution \"$name\"; expected one of:"$'\n'"$names"
 case $wheel in
