@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 from display import Display, forwarded, open_display
-from pogosim.command.display_check import told
+from pogosim.command.display_check import findings_of
 from pogosim.displays.opening import Opening, try_module, try_window
 from pogosim.displays.seen import Seen
 from pogosim.displays.surroundings import Surroundings
-from pogosim.displays.symptoms import HINTS, REASONS, Symptom, hints_of, reason_of
+from pogosim.displays.symptoms import AT_DISPLAY, HINTS, WITHOUT_DISPLAY, Symptom, hints_of, reason_of
 from pogosim.displays.x_server import Answer, answer_of, numbered
 from running import ROOT, build_folder
 
@@ -22,6 +22,7 @@ WSL_1 = "Linux version 4.4.0-19041-Microsoft (Microsoft@Microsoft.com) (gcc vers
 WSL_2 = "Linux version 5.15.90.1-microsoft-standard-WSL2 (oe-user@oe-host) (x86_64-msft-linux-gcc)"
 NOT_FOUND = "libSDL2-2.0.so.0: cannot open shared object file: No such file or directory"
 MESA = "libGL error: MESA-LOADER: failed to open swrast: /usr/lib/dri/swrast_dri.so: cannot open shared object file"
+LOADED = Opening()
 OFFSCREEN = Opening(driver="offscreen")
 X11 = Opening(driver="x11")
 
@@ -43,10 +44,10 @@ def of_windows(root: Path, kernel: str, *files: str) -> None:
 
 
 def reason(
-    root: Path, opening: Opening | None = None, x_server: Answer | None = None, user: int = 1000, **variables: str
+    root: Path, opening: Opening = LOADED, x_server: Answer | None = None, user: int = 1000, **variables: str
 ) -> Symptom:
     """Return why no window opens in faked surroundings."""
-    found = reason_of(Seen(Surroundings(variables, root, user), opening, x_server))
+    found = reason_of(Seen(Surroundings(variables, root, user, "Linux"), opening, x_server))
     assert found is not None
     return found
 
@@ -59,14 +60,23 @@ def hints(root: Path, opening: Opening, user: int = 1000, **variables: str) -> l
 def test_open_window_is_told_with_where_it_is(root: Path) -> None:
     of_windows(root, WSL_2, "mnt/wslg/versions.txt")
     here = Surroundings({"DISPLAY": ":0"}, root)
-    (line,) = told(Seen(here, X11, Answer.CONNECTS))
+    (line,) = findings_of(Seen(here, X11, Answer.CONNECTS))
     assert (line.is_fine, line.found) == (True, "opens, by x11 (WSL 2 with WSLg)")
 
 
-def test_missing_library_is_named(root: Path) -> None:
-    found = reason(root, Opening(load_error=NOT_FOUND))
+@pytest.mark.parametrize("display", [{}, {"DISPLAY": ":0"}])
+def test_missing_library_is_named(root: Path, display: dict[str, str]) -> None:
+    found = reason(root, Opening(load_error=NOT_FOUND), Answer.CONNECTS, **display)
     assert (found.section, found.found) == ("sdl-is-missing", NOT_FOUND)
-    assert found.told == "apt install libsdl2-2.0-0; see docs/displays.md#sdl-is-missing"
+    assert found.advice_with_link == "apt install libsdl2-2.0-0; see docs/displays.md#sdl-is-missing"
+
+
+def test_macos_needs_no_variable_of_a_display(root: Path) -> None:
+    here = Surroundings({}, root, system="Darwin")
+    assert here.is_display_named
+    found = reason_of(Seen(here, Opening(error="No available displays")))
+    assert found is not None
+    assert found.found == "no window opens: No available displays"
 
 
 @pytest.mark.parametrize(
@@ -81,8 +91,7 @@ def test_missing_library_is_named(root: Path) -> None:
 def test_no_variable_of_a_display_means_something_else_in_each_place(
     root: Path, variables: dict[str, str], section: str, said: str
 ) -> None:
-    found = reason_of(Seen(Surroundings(variables, root)))
-    assert found is not None
+    found = reason(root, **variables)
     assert found.section == section
     assert found.found.startswith("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")
     assert said in found.found + found.advice
@@ -252,7 +261,7 @@ def locked(tmp_path: Path) -> Iterator[tuple[Display, Path]]:
 
 def test_display_that_wants_a_key(locked: tuple[Display, Path], tmp_path: Path) -> None:
     display, key = locked
-    assert told(seen_at(display.name, XAUTHORITY=str(key)))[0].found.startswith("opens, by x11")
+    assert findings_of(seen_at(display.name, XAUTHORITY=str(key)))[0].found.startswith("opens, by x11")
     refused = reason_of(seen_at(display.name, XAUTHORITY=str(tmp_path / "none")))
     assert refused is not None
     assert refused.section == "the-connection-is-refused"
@@ -281,7 +290,7 @@ def test_display_that_has_ended() -> None:
 
 
 def test_module_that_cannot_be_loaded(tmp_path: Path) -> None:
-    assert try_module(module(), os.environ) == Opening()
+    assert try_module(module(), os.environ) == LOADED
     assert "no such file" in try_module(tmp_path / "none.so", os.environ).load_error.lower()
     assert not try_window(module(), {**os.environ, "SDL_VIDEODRIVER": "dummy"}).is_open
 
@@ -307,7 +316,7 @@ def sections() -> dict[str, str]:
 
 
 def test_page_explains_all_that_the_doctor_finds() -> None:
-    found = {section for section, _ in (*REASONS, *HINTS)}
+    found = {section for section, _ in (*WITHOUT_DISPLAY, *AT_DISPLAY, *HINTS)}
     assert found <= set(sections())
     marked = {name for name, text in sections().items() if "`pogosim doctor`: yes" in text}
     assert marked == found, "the page says of each symptom whether the doctor finds it"

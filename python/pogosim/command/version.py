@@ -52,30 +52,30 @@ def commit_of(checkout: Path) -> str | None:
 
 
 def found_here() -> tuple[dict[str, str], str | None]:
-    """Return all that is to be told, by name, and what does not go together; None if all does."""
-    told = {"version": pogosim.__version__, **dict.fromkeys(OF_LIBRARY, UNKNOWN)}
+    """Return what is known of this version, by name, and what does not go together; None if all does."""
+    facts = {"version": pogosim.__version__, **dict.fromkeys(OF_LIBRARY, UNKNOWN)}
     of_python = {"Python": platform.python_version()}
     try:
         found = find_installation()
-        told |= build_info(library_file(found)) | {"library": str(library_file(found))}
+        facts |= build_info(library_file(found)) | {"library": str(library_file(found))}
     except (InstallationError, OSError) as error:
-        return told | of_python, f"no library: {error}"
-    told |= of_python
+        return facts | of_python, f"no library: {error}"
+    facts |= of_python
     if found.version != pogosim.__version__:
-        return told, f"the library is of version {found.version}, and this package of {pogosim.__version__}"
+        return facts, f"the library is of version {found.version}, and this package of {pogosim.__version__}"
     now = commit_of(found.folder)
     if now is None:
-        return told, None
-    told["checkout"] = now
-    if now != told["commit"]:
-        return told, f"the library was built at {told['commit']}, and {found.folder} is at {now}: build it again"
-    return told, None
+        return facts, None
+    facts["checkout"] = now
+    if now != facts["commit"]:
+        return facts, f"the library was built at {facts['commit']}, and {found.folder} is at {now}: build it again"
+    return facts, None
 
 
-def as_json(told: dict[str, str]) -> str:
+def as_json(facts: dict[str, str]) -> str:
     """Return it as one JSON object, with keys in lower case; the engines are a list."""
-    values: dict[str, object] = {name.lower(): value for name, value in told.items()}
-    values["engines"] = [] if told["engines"] == UNKNOWN else told["engines"].split(", ")
+    values: dict[str, object] = {name.lower(): value for name, value in facts.items()}
+    values["engines"] = [] if facts["engines"] == UNKNOWN else facts["engines"].split(", ")
     return json.dumps(values)
 
 
@@ -84,11 +84,11 @@ def main(arguments: Sequence[str] = ()) -> int:
     if list(arguments) not in ([], ["--json"]):
         say_error(f"pogosim: --version is followed by nothing or --json, found '{' '.join(arguments)}'")
         return WRONG_USAGE
-    told, problem = found_here()
+    facts, problem = found_here()
     if arguments:
-        say(as_json(told))
+        say(as_json(facts))
     else:
-        say(f"pogosim {told.pop('version')}", *(f"{name}: {value}" for name, value in told.items()))
+        say(f"pogosim {facts.pop('version')}", *(f"{name}: {value}" for name, value in facts.items()))
     if problem:
         say_error(f"pogosim: warning: {problem}")
     return 0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pogosim.displays.seen import Seen, Told
+from pogosim.displays.seen import Diagnosis, Seen
 
 
-def lacks_a_runtime_folder(seen: Seen) -> Told | None:
+def lacks_a_runtime_folder(seen: Seen) -> Diagnosis | None:
     """Wayland's socket is in a folder that is the user's own."""
     if not seen.here.value("WAYLAND_DISPLAY") or seen.here.value("WAYLAND_DISPLAY").startswith("/"):
         return None
@@ -32,14 +32,14 @@ def wrong_folder(folder: Path, user: int) -> str:
     return "" if os.access(folder, os.W_OK | os.X_OK) else "not writable"
 
 
-def draws_indirectly(seen: Seen) -> Told | None:
+def draws_indirectly(seen: Seen) -> Diagnosis | None:
     """A setting for old X servers, with which most programs draw black."""
     if seen.here.value("LIBGL_ALWAYS_INDIRECT") in ("", "0"):
         return None
     return "LIBGL_ALWAYS_INDIRECT is set, with which OpenGL fails on most displays", "unset LIBGL_ALWAYS_INDIRECT"
 
 
-def draws_without_graphics_card(seen: Seen) -> Told | None:
+def draws_without_graphics_card(seen: Seen) -> Diagnosis | None:
     """OpenGL by the processor."""
     names = {"LIBGL_ALWAYS_SOFTWARE": "", "GALLIUM_DRIVER": "pipe", "SDL_RENDER_DRIVER": "software"}
     chosen = [
@@ -55,7 +55,7 @@ def is_chosen(value: str, part: str) -> bool:
     return value not in ("", "0", "false") and part in value
 
 
-def is_far_away(seen: Seen) -> Told | None:
+def is_far_away(seen: Seen) -> Diagnosis | None:
     """Every picture crosses a network."""
     if not seen.is_open or not seen.here.is_display_forwarded:
         return None

@@ -1,4 +1,4 @@
-"""What is known of a display, and what is told of it."""
+"""What is known of a display, and what follows from it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pogosim.displays.surroundings import Surroundings
 from pogosim.displays.x_server import Answer
 
 # What was found, and what to do about it.
-Told = tuple[str, str]
+Diagnosis = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -18,18 +18,18 @@ class Seen:
 
     Attributes:
         here: The machine and the session.
-        opening: What came of opening a window; None if no variable names a display, so that a run does not try.
+        opening: What came of opening a window; where no display is named, of loading its module only.
         x_server: What came of a connection to DISPLAY; None if that is not set.
     """
 
     here: Surroundings
-    opening: Opening | None = None
+    opening: Opening
     x_server: Answer | None = None
 
     @property
     def is_open(self) -> bool:
         """Whether a window opened."""
-        return self.opening is not None and self.opening.is_open
+        return self.opening.is_open
 
     def takes(self, driver: str) -> bool:
         """Tell whether SDL may use a driver."""
@@ -37,9 +37,9 @@ class Seen:
         return not chosen or driver in chosen.split(",")
 
     def x_fails_with(self, *answers: Answer) -> bool:
-        """Tell whether no window opened, X was to be used, and a connection to DISPLAY had one of these answers."""
-        return not self.is_open and self.x_server in answers and self.takes("x11")
+        """Tell, if no window opened, whether X was to be used and a connection to DISPLAY had one of these answers."""
+        return self.x_server in answers and self.takes("x11")
 
     def lines(self) -> list[str]:
         """Return the lines that libraries have printed."""
-        return [line.strip() for line in (self.opening.said if self.opening else "").splitlines() if line.strip()]
+        return [line.strip() for line in self.opening.said.splitlines() if line.strip()]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 CONTAINER_FILES = {".dockerenv": "Docker", "run/.containerenv": "Podman"}
 CONTAINER_VARIABLES = {"APPTAINER_CONTAINER": "Apptainer", "SINGULARITY_CONTAINER": "Apptainer"}
+DISPLAY_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
 SOCKETS = Path("tmp", ".X11-unix")  # where X servers listen
 
 
@@ -20,15 +22,22 @@ class Surroundings:
         environment: The variables.
         root: Folder that stands for /.
         user: Number of the user.
+        system: Name of the operating system, as platform.system() has it.
     """
 
     environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
     root: Path = Path("/")
     user: int = field(default_factory=os.getuid)
+    system: str = field(default_factory=platform.system)
 
     def value(self, name: str) -> str:
         """Return a variable; "" if it is not set."""
         return self.environment.get(name, "")
+
+    @property
+    def is_display_named(self) -> bool:
+        """Whether a run tries to open a window: a variable says where, or it is macOS, which needs none."""
+        return self.system == "Darwin" or any(self.value(name) for name in DISPLAY_VARIABLES)
 
     @property
     def wsl(self) -> int:

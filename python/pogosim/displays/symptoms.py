@@ -11,6 +11,7 @@ from pogosim.displays.hints import (
     is_far_away,
     lacks_a_runtime_folder,
 )
+from pogosim.displays.missing_library import library_is_missing
 from pogosim.displays.no_display import (
     has_no_display,
     is_batch_without_display,
@@ -19,7 +20,7 @@ from pogosim.displays.no_display import (
     is_wsl_1,
     lacks_wslg,
 )
-from pogosim.displays.seen import Seen, Told
+from pogosim.displays.seen import Diagnosis, Seen
 from pogosim.displays.unreachable import (
     does_not_answer,
     draws_nowhere,
@@ -31,23 +32,25 @@ from pogosim.displays.unreachable import (
     is_refused,
     is_stale,
     lacks_opengl,
-    library_is_missing,
     lost_the_socket_of_wslg,
 )
 
 PAGE = "docs/displays.md"
-Look = Callable[[Seen], "Told | None"]
+Look = Callable[[Seen], "Diagnosis | None"]
 
-# Why no window opens: the first one that applies is the reason.
-REASONS: tuple[tuple[str, Look], ...] = (
+# Why no window opens: the first one that applies is the reason, so what is special stands before what is general.
+WITHOUT_DISPLAY: tuple[tuple[str, Look], ...] = (
     ("sdl-is-missing", library_is_missing),
-    ("it-does-not-answer", does_not_answer),
     ("on-a-cluster", is_batch_without_display),
     ("over-ssh", is_ssh_without_forwarding),
     ("in-a-container", is_container_without_display),
     ("wsl-1", is_wsl_1),
     ("wsl-2-without-wslg", lacks_wslg),
     ("no-display", has_no_display),
+)
+AT_DISPLAY: tuple[tuple[str, Look], ...] = (
+    ("sdl-is-missing", library_is_missing),
+    ("it-does-not-answer", does_not_answer),
     ("nothing-is-shown", draws_nowhere),
     ("wslg-has-lost-its-socket", lost_the_socket_of_wslg),
     ("an-x-server-in-windows", has_an_old_setting_of_wsl),
@@ -78,7 +81,7 @@ class Symptom:
     advice: str
 
     @property
-    def told(self) -> str:
+    def advice_with_link(self) -> str:
         """The advice, with its place in the page."""
         return f"{self.advice}; see {PAGE}#{self.section}"
 
@@ -86,13 +89,15 @@ class Symptom:
 def symptoms_of(looks: tuple[tuple[str, Look], ...], seen: Seen) -> Iterator[Symptom]:
     """Return those symptoms of a table that there are, in its order."""
     for section, look in looks:
-        if (told := look(seen)) is not None:
-            yield Symptom(section, *told)
+        if (diagnosis := look(seen)) is not None:
+            yield Symptom(section, *diagnosis)
 
 
 def reason_of(seen: Seen) -> Symptom | None:
     """Return why no window opens; None if one does."""
-    return None if seen.is_open else next(symptoms_of(REASONS, seen), None)
+    if seen.is_open:
+        return None
+    return next(symptoms_of(AT_DISPLAY if seen.here.is_display_named else WITHOUT_DISPLAY, seen))
 
 
 def hints_of(seen: Seen, reason: Symptom | None) -> list[Symptom]:

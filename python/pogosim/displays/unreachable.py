@@ -5,33 +5,26 @@ from __future__ import annotations
 import re
 
 from pogosim.displays.open_window import NOWHERE
-from pogosim.displays.seen import Seen, Told
+from pogosim.displays.seen import Diagnosis, Seen
 from pogosim.displays.x_server import Answer, numbered
 
 
-def library_is_missing(seen: Seen) -> Told | None:
-    """SDL, or what it needs."""
-    if seen.opening is None or not seen.opening.load_error:
-        return None
-    return seen.opening.load_error, "apt install libsdl2-2.0-0"
-
-
-def draws_nowhere(seen: Seen) -> Told | None:
+def draws_nowhere(seen: Seen) -> Diagnosis | None:
     """A setting for machines without a screen is left."""
     drivers = seen.here.value("SDL_VIDEODRIVER")
-    if seen.opening is None or seen.opening.driver not in NOWHERE or not drivers:
+    if seen.opening.driver not in NOWHERE or not drivers:
         return None
     return f"SDL_VIDEODRIVER={drivers} draws into memory, not on a screen", "unset SDL_VIDEODRIVER"
 
 
-def does_not_answer(seen: Seen) -> Told | None:
+def does_not_answer(seen: Seen) -> Diagnosis | None:
     """A connection that hangs."""
-    if seen.opening is None or seen.opening.has_answered:
+    if seen.opening.has_answered:
         return None
     return "the display does not answer", "log in again, or restart its X server; run with -g meanwhile"
 
 
-def lost_the_socket_of_wslg(seen: Seen) -> Told | None:
+def lost_the_socket_of_wslg(seen: Seen) -> Diagnosis | None:
     """WSLg puts a socket into /tmp, where something has removed it."""
     socket = seen.here.x_socket(0)
     kept = seen.here.root / "mnt" / "wslg" / ".X11-unix" / "X0"
@@ -41,7 +34,7 @@ def lost_the_socket_of_wslg(seen: Seen) -> Told | None:
     return "WSLg is there, but /tmp/.X11-unix/X0 is gone", advice
 
 
-def has_an_old_setting_of_wsl(seen: Seen) -> Told | None:
+def has_an_old_setting_of_wsl(seen: Seen) -> Diagnosis | None:
     """DISPLAY still leads to an X server in Windows that does not run, or that a firewall hides."""
     display = seen.here.value("DISPLAY")
     host = (numbered(display) or ("", 0))[0]
@@ -54,7 +47,7 @@ def has_an_old_setting_of_wsl(seen: Seen) -> Told | None:
     return f"nothing answers at DISPLAY={display}, an X server in Windows", advice
 
 
-def is_container_without_sockets(seen: Seen) -> Told | None:
+def is_container_without_sockets(seen: Seen) -> Diagnosis | None:
     """DISPLAY is passed to a container, but not what it names."""
     display = seen.here.value("DISPLAY")
     address = numbered(display)
@@ -66,7 +59,7 @@ def is_container_without_sockets(seen: Seen) -> Told | None:
     return found, "start the container with -v /tmp/.X11-unix:/tmp/.X11-unix"
 
 
-def is_stale(seen: Seen) -> Told | None:
+def is_stale(seen: Seen) -> Diagnosis | None:
     """DISPLAY has outlived its display, or is wrong."""
     display = seen.here.value("DISPLAY")
     if not seen.x_fails_with(Answer.NOTHING, Answer.NO_NAME):
@@ -80,7 +73,7 @@ def is_stale(seen: Seen) -> Told | None:
     return f"nothing answers at DISPLAY={display}", f"{again}; in tmux and screen, set it to that of the new login"
 
 
-def is_refused(seen: Seen) -> Told | None:
+def is_refused(seen: Seen) -> Diagnosis | None:
     """The server wants a key, or another one."""
     if not seen.x_fails_with(Answer.CONNECTS):
         return None
@@ -93,10 +86,8 @@ def is_refused(seen: Seen) -> Told | None:
     return f"DISPLAY={seen.here.value('DISPLAY')} refuses the connection{reason}", advice
 
 
-def lacks_opengl(seen: Seen) -> Told | None:
+def lacks_opengl(seen: Seen) -> Diagnosis | None:
     """On Wayland, SDL draws with OpenGL."""
-    if seen.opening is None:
-        return None
     lines = [line for line in seen.lines() if re.search("libGL|libEGL|MESA-LOADER|MESA: error", line)]
     has_no_egl = "EGL" in seen.opening.error or "GL" in seen.opening.error.split()
     if not lines and not has_no_egl:
@@ -105,30 +96,22 @@ def lacks_opengl(seen: Seen) -> Told | None:
     return f"no OpenGL: {found}", "apt install libgl1-mesa-dri libegl1, or SDL_VIDEODRIVER=x11, which needs none"
 
 
-def has_no_compositor(seen: Seen) -> Told | None:
+def has_no_compositor(seen: Seen) -> Diagnosis | None:
     """WAYLAND_DISPLAY has outlived its desktop, and there is no X."""
     name = seen.here.value("WAYLAND_DISPLAY")
-    if (
-        seen.is_open
-        or seen.opening is None
-        or seen.opening.driver == "wayland"
-        or not name
-        or not seen.takes("wayland")
-    ):
+    if seen.opening.driver == "wayland" or not name or not seen.takes("wayland"):
         return None
     return f"nothing answers at WAYLAND_DISPLAY={name}", "log in to the desktop again, or run with -g"
 
 
-def has_another_driver(seen: Seen) -> Told | None:
+def has_another_driver(seen: Seen) -> Diagnosis | None:
     """SDL_VIDEODRIVER names a kind of display that is not there, while another one may be."""
     drivers = seen.here.value("SDL_VIDEODRIVER")
-    if seen.opening is None or not drivers or not seen.opening.error.endswith("not available"):
+    if not drivers or not seen.opening.error.endswith("not available"):
         return None
     return f"SDL_VIDEODRIVER={drivers}: {seen.opening.error}", "unset SDL_VIDEODRIVER, and SDL takes what is there"
 
 
-def fails_otherwise(seen: Seen) -> Told | None:
+def fails_otherwise(seen: Seen) -> Diagnosis:
     """What SDL says."""
-    if seen.is_open or seen.opening is None:
-        return None
     return f"no window opens: {seen.opening.error or seen.opening.driver}", "run with -g"
