@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,7 +22,9 @@ from running import ROOT, build_folder
 PAGE = ROOT / "docs" / "displays.md"
 WSL_1 = "Linux version 4.4.0-19041-Microsoft (Microsoft@Microsoft.com) (gcc version 5.4.0)"
 WSL_2 = "Linux version 5.15.90.1-microsoft-standard-WSL2 (oe-user@oe-host) (x86_64-msft-linux-gcc)"
-NOT_FOUND = "libSDL2-2.0.so.0: cannot open shared object file: No such file or directory"
+NOT_FOUND = "cannot open shared object file: No such file or directory"
+OF_MACOS = "dlopen(/opt/libpogosim_view-v1.dylib, 0x0006): Library not loaded"
+PIP = f"{shlex.quote(sys.executable)} -m pip install pysdl2-dll"
 MESA = "libGL error: MESA-LOADER: failed to open swrast: /usr/lib/dri/swrast_dri.so: cannot open shared object file"
 LOADED = Opening()
 OFFSCREEN = Opening(driver="offscreen")
@@ -43,13 +47,18 @@ def of_windows(root: Path, kernel: str, *files: str) -> None:
         (root / file).touch()
 
 
+def reason_in(here: Surroundings, opening: Opening = LOADED, x_server: Answer | None = None) -> Symptom:
+    """Return why no window opens."""
+    found = reason_of(Seen(here, opening, x_server))
+    assert found is not None
+    return found
+
+
 def reason(
     root: Path, opening: Opening = LOADED, x_server: Answer | None = None, user: int = 1000, **variables: str
 ) -> Symptom:
     """Return why no window opens in faked surroundings."""
-    found = reason_of(Seen(Surroundings(variables, root, user, "Linux"), opening, x_server))
-    assert found is not None
-    return found
+    return reason_in(Surroundings(variables, root, user, "Linux"), opening, x_server)
 
 
 def hints(root: Path, opening: Opening, user: int = 1000, **variables: str) -> list[Symptom]:
@@ -65,17 +74,29 @@ def test_open_window_is_told_with_where_it_is(root: Path) -> None:
 
 
 @pytest.mark.parametrize("display", [{}, {"DISPLAY": ":0"}])
-def test_missing_library_is_named(root: Path, display: dict[str, str]) -> None:
-    found = reason(root, Opening(load_error=NOT_FOUND), Answer.CONNECTS, **display)
-    assert (found.section, found.found) == ("sdl-is-missing", NOT_FOUND)
-    assert found.advice_with_link == "apt install libsdl2-2.0-0; see docs/displays.md#sdl-is-missing"
+@pytest.mark.parametrize(
+    ("error", "advice"),
+    [
+        (f"libSDL2-2.0.so.0: {NOT_FOUND}", "apt install libsdl2-2.0-0"),
+        (f"libSDL2-2.0.so: {NOT_FOUND}", PIP),  # of a wheel
+        (f"{OF_MACOS}: @rpath/SDL2.framework/Versions/A/SDL2", PIP),
+        (f"{OF_MACOS}: /opt/homebrew/opt/sdl2/lib/libSDL2-2.0.0.dylib", "brew install sdl2"),
+        (f"libpng16.so.16: {NOT_FOUND}", "install the library that is named here, or Pogosim again"),
+    ],
+)
+def test_missing_library_is_named_with_where_it_comes_from(
+    root: Path, error: str, advice: str, display: dict[str, str]
+) -> None:
+    opening = Opening(load_error=f"{error}\n  Reason: tried: '/usr/lib'")
+    found = reason_in(Surroundings(display, root, system="Linux"), opening, Answer.CONNECTS)
+    assert (found.section, found.found) == ("sdl-is-missing", error)
+    assert found.advice_with_link == f"{advice}; see docs/displays.md#sdl-is-missing"
 
 
 def test_macos_needs_no_variable_of_a_display(root: Path) -> None:
     here = Surroundings({}, root, system="Darwin")
     assert here.is_display_named
-    found = reason_of(Seen(here, Opening(error="No available displays")))
-    assert found is not None
+    found = reason_in(here, Opening(error="No available displays"))
     assert found.found == "no window opens: No available displays"
 
 
@@ -91,7 +112,7 @@ def test_macos_needs_no_variable_of_a_display(root: Path) -> None:
 def test_no_variable_of_a_display_means_something_else_in_each_place(
     root: Path, variables: dict[str, str], section: str, said: str
 ) -> None:
-    found = reason(root, **variables)
+    found = reason_in(Surroundings(variables, root, system="Linux"))
     assert found.section == section
     assert found.found.startswith("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")
     assert said in found.found + found.advice
