@@ -4,6 +4,7 @@
 #
 # It is what git describes; outside of a checkout, what was recorded when the sources were packed: in cmake/sdist_commit.txt
 # (a source distribution of Python, see cmake/recorded_commit.py) or cmake/archive_commit.txt (git archive); else "unknown".
+# If git fails in a checkout, as in one of another user, a line of the build says so.
 function(pogosim_commit library file)
     add_custom_target(${library}_commit ALL BYPRODUCTS "${file}" VERBATIM
         COMMAND "${CMAKE_COMMAND}" "-DFOLDER=${PROJECT_SOURCE_DIR}" "-DFILE=${file}"
@@ -27,9 +28,15 @@ endforeach()
 # A checkout of its own: the repository of a project that has a copy of these sources has other commits.
 if(EXISTS "${FOLDER}/.git")
     execute_process(COMMAND git -C "${FOLDER}" describe --always --tags --dirty
-        OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE result ERROR_QUIET)
+        OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE result ERROR_VARIABLE error)
     if(result EQUAL 0)
         set(commit "${described}")
+    else()
+        string(REGEX REPLACE "\n.*" "" reason "${error}")
+        if(NOT reason)
+            set(reason "${result}") # such as that there is no git
+        endif()
+        message(NOTICE "commit.cmake: git cannot describe the checkout ${FOLDER}, so its commit is recorded as \"${commit}\": ${reason}")
     endif()
 endif()
 set(known "")

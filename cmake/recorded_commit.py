@@ -12,15 +12,15 @@ FILE = ROOT / "cmake" / "sdist_commit.txt"
 
 
 class RecordedCommit:
-    """Writes sdist_commit.txt, which cmake/commit.cmake reads where there is no repository. Adds no metadata."""
+    """Has cmake/commit.cmake write sdist_commit.txt, which it reads where there is no repository. Adds no metadata."""
 
     def build_state(self, state: str) -> None:
         """Write the file if a source distribution is made of a checkout."""
         if state != "sdist" or not (ROOT / ".git").exists():
             return
-        command = ["git", "-C", str(ROOT), "describe", "--always", "--tags", "--dirty"]
-        described = subprocess.run(command, capture_output=True, text=True, check=False)
-        FILE.write_text(described.stdout)
+        FILE.unlink(missing_ok=True)  # of an earlier one
+        command = ["cmake", f"-DFOLDER={ROOT}", f"-DFILE={FILE}", "-P", str(ROOT / "cmake" / "commit.cmake")]
+        subprocess.run(command, check=True)
 
     def dynamic_metadata(self, settings: Mapping[str, Any], project: Mapping[str, Any]) -> dict[str, Any]:  # noqa: ARG002
         """Return entries to add to [project]: none."""

@@ -15,16 +15,24 @@ from pathlib import Path
 
 import pogosim
 import pytest
-from pogosim.command.version import build_info, library_file
+from pogosim.command.version import build_info, commit_of, library_file
 from pogosim.installation import installation_in
 from project import CLEAN
 from running import ROOT, Run, build_folder, pkg_config, ran, write_scene
 
 HEADER = ROOT / "include" / "pogosim" / "version.h"
 COPY = ROOT / "python" / "pogosim" / "__init__.py"
+CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 COMMIT = ROOT / "cmake" / "commit.cmake"
 AUTHOR = [f"GIT_{role}_{what}" for role in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")]
 NAMES = ["commit", "compiler", "engines", "Arrow"]
+
+
+def header_of_minor_version(minor: int) -> str:
+    """Return the text of the header with another minor version."""
+    text, count = re.subn(r"(?m)^(#define POGOSIM_VERSION_MINOR) \d+$", rf"\1 {minor}", HEADER.read_text())
+    assert count == 1
+    return text
 
 
 def version_of(header: Path) -> str:
@@ -69,23 +77,28 @@ def test_package_build_and_metadata_have_the_version_of_the_header() -> None:
     assert found.version == version
 
 
-def test_no_other_file_of_the_build_states_it() -> None:
-    listed = git(ROOT, "ls-files", "CMakeLists.txt", "pyproject.toml", "cmake", "include", "python", "scripts", "src")
-    found = {
+def test_copies_are_in_the_files_that_the_page_on_releases_names_and_in_no_others() -> None:
+    (release,) = re.findall(r"^\*\*A release\*\*.*?\n\n", CONTRIBUTING.read_text(), re.MULTILINE | re.DOTALL)
+    (copies,) = re.findall(r"its\ncopies, .*?:\n(.*?)\.\n", release, re.DOTALL)
+    named = re.findall(r"`(\S+)`", copies)
+    version = version_of(HEADER)
+    # Pages and tests name versions for other reasons: when a time was measured, what a change is of.
+    places = ["*.cff", "*.toml", "CMakeLists.txt", ".ci", ".github", ".gitlab-ci.yml", "cmake", "containers", "include"]
+    listed = git(ROOT, "ls-files", *places, "modules", "python", "scripts", "src", "template_prj", "tools")
+    found = [
         name
         for name in listed.splitlines()
-        if Path(name).suffix in {".txt", ".toml", ".cmake", ".in", ".py", ".h", ".hpp", ".c", ".cpp", ".mk", ".sh"}
-        and f"{version_of(HEADER)}" in re.sub(r'such as ".*"|before .*', "", (ROOT / name).read_text())
-    }
-    assert found == {str(COPY.relative_to(ROOT))}
+        if (file := ROOT / name).is_file()  # no link to a folder
+        and version in re.sub(r'such as ".*"|before .*', "", file.read_text(errors="replace"))
+    ]
+    assert sorted(name.replace(version, "VERSION") for name in found) == sorted(named)
 
 
 def test_text_of_the_header_is_made_of_its_numbers(tmp_path: Path) -> None:
     (tmp_path / "main.c").write_text(
         '#include <stdio.h>\n#include "version.h"\nint main(void) { return puts(POGOSIM_VERSION) < 0; }\n'
     )
-    header = HEADER.read_text().replace(" POGOSIM_VERSION_MINOR 11\n", " POGOSIM_VERSION_MINOR 34\n")
-    (tmp_path / "version.h").write_text(header)
+    (tmp_path / "version.h").write_text(header_of_minor_version(34))
     subprocess.run(["cc", "-Wall", "-Werror", "main.c", "-o", "main"], cwd=tmp_path, check=True)
     assert ran(tmp_path, "./main").output == f"v{version_of(tmp_path / 'version.h')}\n"
     assert ".34." in version_of(tmp_path / "version.h")
@@ -247,8 +260,9 @@ def test_library_of_another_version_than_the_package_is_told(checkout: Path, tmp
 
 
 def recorded(folder: Path, file: Path) -> str:
-    """Return what a build of the sources in a folder writes into a file."""
-    subprocess.run(["cmake", f"-DFOLDER={folder}", f"-DFILE={file}", "-P", COMMIT], check=True)
+    """Return what a build of the sources in a folder writes into a file, without a warning."""
+    built = ran(folder, "cmake", f"-DFOLDER={folder}", f"-DFILE={file}", "-P", COMMIT)
+    assert (built.code, built.text) == (0, "")
     return file.read_text().removesuffix("\n")
 
 
@@ -265,13 +279,23 @@ def test_commit_is_that_of_the_checkout(sources: Path, tmp_path: Path) -> None:
     assert recorded(sources, file) == "unknown"
     (sources / "main.c").touch()
     first = committed(sources)
-    assert recorded(sources, file) == first
+    assert recorded(sources, file) == commit_of(sources) == first
     (sources / "main.c").write_text("int a;\n")
-    assert recorded(sources, file) == f"{first}-dirty"
+    assert recorded(sources, file) == commit_of(sources) == f"{first}-dirty"
     second = committed(sources, "second")
-    assert recorded(sources, file) == second != first
+    assert recorded(sources, file) == commit_of(sources) == second != first
     git(sources, "tag", "v7.8.9")
-    assert recorded(sources, file) == "v7.8.9"
+    assert recorded(sources, file) == commit_of(sources) == "v7.8.9"
+
+
+def test_build_says_in_one_line_that_git_fails(sources: Path, tmp_path: Path) -> None:
+    (sources / ".git").write_text("gitdir: nowhere\n")
+    file = tmp_path / "commit"
+    built = ran(sources, "cmake", f"-DFOLDER={sources}", f"-DFILE={file}", "-P", COMMIT)
+    assert (built.code, built.output, built.errors.count("\n")) == (0, "", 1)
+    assert f'checkout {sources}, so its commit is recorded as "unknown": fatal: ' in built.errors
+    assert file.read_text() == "unknown\n"
+    assert commit_of(sources) is None
 
 
 def test_file_is_written_only_for_another_commit(sources: Path, tmp_path: Path) -> None:
@@ -301,12 +325,19 @@ def test_archive_of_git_has_its_commit(sources: Path, tmp_path: Path) -> None:
     assert recorded(unpacked, tmp_path / "commit") == commit
 
 
-def test_source_distribution_has_its_commit(sources: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("works", [True, False], ids=["git works", "git fails"])
+def test_source_distribution_has_its_commit(works: bool, sources: Path, tmp_path: Path) -> None:
     needed = ("pyproject.toml", "README.md", "LICENSE", ".gitignore", "include/pogosim/version.h")
-    for name in (*needed, "cmake/arrow_requirement.py", "cmake/recorded_commit.py", "cmake/archive_commit.txt"):
+    providers = ("arrow_requirement.py", "recorded_commit.py", "commit.cmake", "archive_commit.txt")
+    for name in (*needed, *(f"cmake/{provider}" for provider in providers)):
         (sources / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, sources / name)
-    commit = committed(sources)
+    (sources / "cmake" / "sdist_commit.txt").write_text("earlier\n")
+    if works:
+        commit = committed(sources)
+    else:
+        (sources / ".git").write_text("gitdir: nowhere\n")
+        commit = "unknown"
     code = f"from scikit_build_core.build import build_sdist\nbuild_sdist({str(tmp_path)!r})"
     built = ran(sources, sys.executable, "-c", code)
     assert built.code == 0, built.text
@@ -321,9 +352,7 @@ def test_source_distribution_has_its_commit(sources: Path, tmp_path: Path) -> No
 def program_of_minor_version(folder: Path, minor: int, *flags: str) -> Path:
     """Compile a program, and what is linked into each, for another minor version; returns it."""
     (include := folder / "include" / "pogosim").mkdir(parents=True)
-    own = re.search(r"^#define POGOSIM_VERSION_MINOR \d+$", HEADER.read_text(), re.MULTILINE)
-    assert own
-    (include / "version.h").write_text(HEADER.read_text().replace(own[0], f"#define POGOSIM_VERSION_MINOR {minor}"))
+    (include / "version.h").write_text(header_of_minor_version(minor))
     sources = [ROOT / "src" / "program" / name for name in ("program.c", "main.c")]
     words = ["-I", str(include.parent), "-I", str(ROOT / "include"), *flags, str(ROOT / "examples/helloworld/main.c")]
     program = folder / "program"
