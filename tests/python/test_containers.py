@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pogosim
 import pytest
+from packaging.requirements import Requirement
 from running import ROOT, ran
 
 CONTAINERFILE = ROOT / "containers" / "Containerfile"
@@ -74,6 +75,18 @@ def test_module_of_easybuild_is_of_this_version() -> None:
     assert recipe.name == f"{values['name']}-{values['version']}-{toolchain[1]}-{toolchain[2]}.eb"
     assert values["version"] == pogosim.__version__
     assert f"/pogosim/{pogosim.__version__}" in (MODULES / "pogosim.tcl").read_text()
+
+
+def test_module_of_easybuild_has_the_arrow_that_wheels_are_built_with() -> None:
+    sys.path.insert(0, str(ROOT / "scripts"))
+    from cross.dependencies import PYARROW
+
+    (recipe,) = MODULES.glob("*.eb")
+    (version,) = re.findall(r"^    \('pyarrow', '([\d.]+)', \{$", recipe.read_text(), re.MULTILINE)
+    required = Requirement(PYARROW)
+    assert required.name == "pyarrow"
+    assert version in required.specifier
+    assert set(re.findall(r"'pyarrow-([\d.]+)-", recipe.read_text())) == {version}
 
 
 def test_wheel_is_the_one_that_the_project_makes() -> None:
