@@ -46,8 +46,9 @@ def test_what_templates_name_exists(template: Path) -> None:
     text = template.read_text()
     files = re.findall(r"(?<![\w/])(?:docs/)?\w+\.md\b", text)
     assert [file for file in files if not (ROOT / file).exists()] == []
-    for words in re.findall(r"`pogosim ([a-z-]+)`", text):
-        done = subprocess.run([sys.executable, "-m", "pogosim", words, "--help"], capture_output=True, check=False)
+    for word in re.findall(r"`pogosim ([a-z-]+)`", text):
+        words = [word] if word.startswith("-") else [word, "--help"]
+        done = subprocess.run([sys.executable, "-m", "pogosim", *words], capture_output=True, check=False)
         assert done.returncode == 0, words
 
 
