@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pogosim
 import pytest
 import yaml
 from running import ROOT
@@ -184,27 +185,131 @@ def test_wheels_are_for_the_same_machines_on_both_forges() -> None:
     assert set(targets) <= set(TARGETS)
 
 
-def published(folder: Path, tag: str, *wheels: str) -> tuple[int, str]:
-    """Check wheels as before they are published; returns exit code and message."""
-    for wheel in wheels:
-        (folder / wheel).touch()
-    command = [str(ROOT / ".ci" / "publish"), "--check", tag, str(folder)]
+def jobs(file: Path) -> dict[str, dict[str, Any]]:
+    """Return the jobs of a file of either forge, by name; those of GitLab have what they extend."""
+    content = yaml.safe_load(file.read_text())
+    if "jobs" in content:
+        return dict(content["jobs"])
+
+    def extended(name: str) -> dict[str, Any]:
+        job: dict[str, Any] = content[name]
+        return (extended(job["extends"]) if "extends" in job else {}) | job
+
+    found = {name: extended(name) for name, value in content.items() if isinstance(value, dict) and name[0] != "."}
+    return {name: job for name, job in found.items() if "script" in job}
+
+
+def test_wheels_are_tried_on_the_same_machines_on_both_forges() -> None:
+    on_github = jobs(GITHUB / "workflows" / "wheels.yml")["try"]["strategy"]["matrix"]["include"]
+    on_gitlab = {name: job for name, job in jobs(GITLAB).items() if name.startswith("try_")}
+    assert len(on_github) == len(on_gitlab) > 3
+    (old,) = [row for row in on_github if "image" in row]
+    same = [job for job in on_gitlab.values() if job.get("image") == old["image"]]
+    assert [job["variables"]["PYTHON"] for job in same] == [old["python"]]
+    assert old["python"] in same[0]["before_script"][0]
+
+
+def test_wheels_are_published_only_after_all_tries() -> None:
+    assert jobs(GITHUB / "workflows" / "wheels.yml")["publish"]["needs"] == "try"
+    of_gitlab = jobs(GITLAB)
+    needs = [need if isinstance(need, dict) else {"job": need} for need in of_gitlab["publish"]["needs"]]
+    assert {need["job"] for need in needs} == {"wheel", *(name for name in of_gitlab if name.startswith("try_"))}
+    # A job whose machine not every project has is missing there; a need of it would be an error.
+    optional = {need["job"] for need in needs if need.get("optional")}
+    assert optional == {need["job"] for need in needs if "_RUNNER" in str(of_gitlab[need["job"]]["rules"])}
+
+
+def test_wheels_of_tags_are_made_without_caches() -> None:
+    prepare = [
+        step["with"]["cache"]
+        for step in jobs(GITHUB / "workflows" / "wheels.yml")["make"]["steps"]
+        if step.get("uses") == "./.github/actions/prepare"
+    ]
+    assert prepare == ["${{ github.ref_type != 'tag' && format('wheel-{0}', matrix.target) || '' }}"]
+    wheel = jobs(GITLAB)["wheel"]
+    assert wheel["rules"][0] == {"if": "$CI_COMMIT_TAG", "variables": {"WHEEL_CACHE": "push"}}  # written, not read
+    assert wheel["cache"]["policy"] == "$WHEEL_CACHE"
+
+
+def test_each_job_has_a_cache_of_its_own() -> None:
+    names = []
+    for workflow in WORKFLOWS:
+        for job in jobs(workflow).values():
+            for step in job["steps"]:
+                if name := step.get("with", {}).get("cache"):
+                    names.append(name)
+                    assert ("matrix" in job.get("strategy", {})) == ("matrix." in name), name
+    assert len(set(names)) == len(names) > 4
+
+
+# ---- What is published
+
+
+def git(folder: Path, *words: str) -> None:
+    """Run git in a folder, with a name of its own for commits."""
+    identity = ["-c", "user.name=Tester", "-c", "user.email=tester@example.org"]
+    subprocess.run(["git", "-C", str(folder), *identity, *words], check=True)
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """Return a checkout that has the script and the version; its tag is on origin/main."""
+    for name in (".ci/publish", "python/pogosim/__init__.py"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    git(tmp_path, "init", "--quiet")
+    git(tmp_path, "add", "--all")
+    git(tmp_path, "commit", "--quiet", "--message", "first")
+    git(tmp_path, "update-ref", "refs/remotes/origin/main", "HEAD")
+    git(tmp_path, "tag", f"v{pogosim.__version__}")
+    (tmp_path / "dist").mkdir()
+    (tmp_path / "dist" / f"pogobot_simulator-{pogosim.__version__}-py3-none-manylinux_2_28_x86_64.whl").touch()
+    return tmp_path
+
+
+def published(checkout: Path, tag: str = f"v{pogosim.__version__}") -> tuple[int, str]:
+    """Check the wheels in dist as before they are published; returns exit code and message."""
+    command = [str(checkout / ".ci" / "publish"), "--check", tag, str(checkout / "dist")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.stderr.count("\n") == (done.returncode != 0)
     return done.returncode, done.stderr
 
 
-def test_only_wheels_of_the_tagged_version_are_published(tmp_path: Path) -> None:
-    import pogosim
-
-    version = pogosim.__version__
-    wheel = f"pogobot_simulator-{version}-py3-none-manylinux_2_28_x86_64.whl"
-    code, message = published(tmp_path, f"v{version}")
+def test_only_wheels_of_the_tagged_version_are_published(checkout: Path) -> None:
+    assert published(checkout) == (0, "")
+    code, message = published(checkout, "v0.0.1")
+    assert code == 2
+    assert f"tag v{pogosim.__version__}" in message
+    (checkout / "dist" / "pogobot_simulator-0.0.1-py3-none-any.whl").touch()
+    code, message = published(checkout)
+    assert code == 2
+    assert "is not of version" in message
+    for wheel in (checkout / "dist").iterdir():
+        wheel.unlink()
+    code, message = published(checkout)
     assert code == 2
     assert "no wheels" in message
-    assert published(tmp_path, f"v{version}", wheel) == (0, "")
-    code, message = published(tmp_path, "v0.0.1")
-    assert (code, message.count("\n")) == (2, 1)
-    assert f"tag v{version}" in message
-    code, message = published(tmp_path, f"v{version}", "pogobot_simulator-0.0.1-py3-none-any.whl")
-    assert (code, message.count("\n")) == (2, 1)
-    assert "is not of version" in message
+
+
+def test_only_tags_on_main_are_published(checkout: Path) -> None:
+    tag = f"v{pogosim.__version__}"
+    git(checkout, "commit", "--quiet", "--allow-empty", "--message", "of a branch")
+    assert published(checkout) == (0, "")  # the tag counts, not what is checked out
+    git(checkout, "tag", "--force", tag)
+    code, message = published(checkout)
+    assert code == 2
+    assert f"the tag {tag} is not on origin/main" in message
+    git(checkout, "tag", "--delete", tag)
+    code, message = published(checkout)
+    assert code == 2
+    assert f"there is no tag {tag}" in message
+
+
+def test_tools_that_publish_are_pinned() -> None:
+    requirements = (ROOT / ".ci" / "publish_requirements.txt").read_text().replace("\\\n", "")
+    lines = [line for line in requirements.splitlines() if line and not line.startswith("#")]
+    assert [line for line in lines if not re.match(r"[\w-]+==[\w.]+ .*--hash=sha256:[0-9a-f]{64}", line)] == []
+    assert any(line.startswith("twine==") for line in lines)
+    assert "--require-hashes" in (ROOT / ".ci" / "publish").read_text()
+    tools = re.findall(r"\b(auditwheel|ziglang)(\S*)", (ROOT / "scripts" / "make_wheel.sh").read_text())
+    assert {name for name, version in tools if re.fullmatch(r"==[\d.]+", version)} == {"auditwheel", "ziglang"}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tries a wheel on this machine as a new user does, on Linux and macOS: installs it in an environment of its own, and does there
-# what ../first_steps.sh says. Needs Python, a C compiler and make, and a network for the packages that the wheel requires;
-# takes a minute; leaves nothing behind. (bare_machine.sh makes a machine to try it on.)
+# what ../first_steps.sh says. Needs Python (PYTHON is another one than python3), a C compiler and make, and a network for
+# the packages that the wheel requires; takes a minute; leaves nothing behind. (bare_machine.sh makes a machine to try it on.)
 set -euo pipefail
 
 if [ $# -ne 1 ] || [ ! -f "$1" ]; then
@@ -16,7 +16,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 set -x
-python3 -m venv env
+"${PYTHON:-python3}" -m venv env
 env/bin/pip install --quiet --disable-pip-version-check "$wheel"
 PATH=$folder/env/bin:$PATH
 "$steps"
