@@ -7,6 +7,7 @@
 #ifndef POGOSIM_SHARED_STATE_H
 #define POGOSIM_SHARED_STATE_H
 
+/// @cond
 // What is between these may use __COUNTER__, which newer clang warns of with -Wpedantic where it is expanded.
 #define POGO_WITH_COUNTER
 #define POGO_WITHOUT_COUNTER
@@ -18,6 +19,7 @@
 #define POGO_WITHOUT_COUNTER _Pragma("clang diagnostic pop")
 #endif
 #endif
+/// @endcond
 
 /// Marks a variable that simulated robots share intentionally, such as a count over the whole swarm for the data file:
 ///

@@ -16,11 +16,13 @@
 #define POGOSIM_VERSION POGOSIM_VERSION_STRING
 ///@}
 
+/// @cond
 // A version as such a text: 1, 2, 3 is "v1.2.3".
 #define POGOSIM_VERSION_TEXT(major, minor, patch) \
     "v" POGOSIM_VERSION_QUOTED(major) "." POGOSIM_VERSION_QUOTED(minor) "." POGOSIM_VERSION_QUOTED(patch)
 // A number as a text.
 #define POGOSIM_VERSION_QUOTED(number) #number
+/// @endcond
 
 /// A version as a number that can be compared: 1.2.3 is 1002003.
 #define POGOSIM_VERSION_ENCODE(major, minor, patch) ((major)*1000000 + (minor)*1000 + (patch))
