@@ -4,9 +4,10 @@
 
 #include <pthread.h>
 
-#include <atomic>
-
 namespace pogosim {
+
+/// Signals that were sent to a thread and not taken by it.
+struct UntakenSignals;
 
 /// A thread to which signals are sent, as long as it lives.
 class SignalledThread {
@@ -15,18 +16,23 @@ public:
     static SignalledThread current();
 
     pthread_t id() const { return thread_; }
-    bool is_current() const { return counts_ != nullptr && pthread_equal(thread_, pthread_self()) != 0; }
+    bool is_current() const { return untaken_ != nullptr && pthread_equal(thread_, pthread_self()) != 0; }
 
     /// Sends it SIGALRM or SIGPROF. For signal handlers, too.
     void send(int signal) const;
 
 private:
     pthread_t thread_{};
-    std::atomic<int>* counts_ = nullptr;  // of its SIGALRM and its SIGPROF that were sent and not taken
+    UntakenSignals* untaken_ = nullptr;
 };
 
-/// For handlers of SIGALRM and SIGPROF: whether such a signal was sent to this thread. Each one counts once; where
-/// several come as one, an alarm of others that comes later is taken for one of them.
+/// Whether SignalledThread::current() was called in this thread, or in one that had its id and has ended. For handlers:
+/// if not, no signal of ours is for this thread, and its thread-local variables may be unused; macOS allocates them at
+/// their first use.
+bool is_signalled_thread();
+
+/// For handlers of SIGALRM and SIGPROF: whether such a signal was sent to this thread. Each one counts once. If two
+/// merge, a later alarm of the user's is taken for ours.
 bool take_sent_signal(int signal);
 
 }  // namespace pogosim

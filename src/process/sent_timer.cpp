@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <ctime>
 #include <mutex>
@@ -63,7 +64,7 @@ struct SentTimer::Entry {
     // Written by start() and stop().
     std::atomic<std::int64_t> period_ns = 0;  // 0: it is stopped
     std::atomic<unsigned> starts = 0;
-    // Of the thread that looks.
+    // The thread that looks has these for itself.
     unsigned starts_seen = 0;
     std::int64_t due_ns = 0;
 
@@ -110,9 +111,12 @@ public:
         std::erase_if(entries_, [entry](auto const& one) { return one.get() == entry; });
     }
 
+    /// For signal handlers, too.
     void wake() const {
+        int const error_before = errno;  // that of the code which a handler interrupts
         char const any = 0;
         [[maybe_unused]] ssize_t const ignored = write(ends_[1], &any, sizeof(any));  // full: it will wake up anyway
+        errno = error_before;
     }
 
     void serve() {

@@ -9,7 +9,8 @@
 
 namespace pogosim {
 
-/// Belongs to the thread that makes it; its signals are those of sent_signals.hpp. In a child of fork() it does nothing.
+/// Belongs to the thread that makes it; its signals are those of sent_signals.hpp. In a child of fork() it does
+/// nothing.
 class SentTimer {
 public:
     SentTimer(TimerClock clock, int signal);

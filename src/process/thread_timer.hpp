@@ -34,7 +34,7 @@ public:
     /// Stops it until it is armed again.
     void disarm();
 
-    /// No signal comes after this.
+    /// It sends no signal after this. One that it sent before may still be on its way.
     void remove();
 
     /// In a child of fork(), which has not inherited it.

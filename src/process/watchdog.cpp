@@ -42,6 +42,10 @@ double thread_processor_time_s() {
 /// The run that a signal is for: one of its timers has sent it, or hurry_thread() has. Null: there is none; a signal of
 /// others, such as an alarm of the host, has been passed on.
 CrashHandlerState* run_of(int signal, siginfo_t* info, void* signal_context) {
+    if (!is_signalled_thread()) {
+        pass_on(signal, info, signal_context);
+        return nullptr;
+    }
     CrashHandlerState* const handler = active_handler;
     ThreadTimers const* const timers = handler != nullptr ? handler->timers : timers_of_thread;
     if (take_sent_signal(signal) || is_of_timer(timers, *info)) {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -54,7 +53,6 @@ def hits(kept: Path) -> int:
     return sum(int(count) for count in re.findall(r"^(?:direct|preprocessed)_cache_hit\s+(\d+)", done.stdout, re.M))
 
 
-@pytest.mark.skipif(shutil.which("ccache") is None, reason="no ccache")
 @pytest.mark.parametrize(("build_type", "shared"), [("Release", 1), ("Debug", 0)])
 def test_clones_share_what_was_compiled_unless_it_names_their_folder(
     build_type: str, shared: int, tmp_path: Path
@@ -64,7 +62,6 @@ def test_clones_share_what_was_compiled_unless_it_names_their_folder(
         assert hits(tmp_path / "kept") == number * shared
 
 
-@pytest.mark.skipif(shutil.which("ccache") is None, reason="no ccache")
 def test_debug_information_names_the_folder_of_its_build(tmp_path: Path) -> None:
     for clone in ("first", "second"):
         assert f"/{clone}/build".encode() in built(tmp_path / clone, tmp_path / "kept", "Debug").read_bytes()
