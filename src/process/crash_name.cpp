@@ -43,31 +43,36 @@ struct Stack {
 
 thread_local Stack noted;
 
-#ifdef __APPLE__
-auto const& registers_of(void const* signal_context) {
-    return static_cast<ucontext_t const*>(signal_context)->uc_mcontext->__ss;
-}
-#endif
+/// What the processor had in its registers at the time of a signal; null on unknown architectures.
+struct Registers {
+    void* counter = nullptr;
+    void* stack = nullptr;
+    void* link = nullptr;  // the return address, where calls leave it in a register
+};
 
-/// Null on unknown architectures.
-void* stack_pointer([[maybe_unused]] void const* signal_context) {
-#if defined(__linux__) && defined(__x86_64__)
+Registers registers_of([[maybe_unused]] void const* signal_context) {
     // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
-    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
+    [[maybe_unused]] auto const place = [](auto address) { return reinterpret_cast<void*>(address); };
+    [[maybe_unused]] auto const& at_signal = static_cast<ucontext_t const*>(signal_context)->uc_mcontext;
+#if defined(__linux__) && defined(__x86_64__)
+    return {.counter = place(at_signal.gregs[REG_RIP]), .stack = place(at_signal.gregs[REG_RSP])};
 #elif defined(__linux__) && defined(__aarch64__)
-    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.sp);
+    constexpr int link_register = 30;
+    return {.counter = place(at_signal.pc), .stack = place(at_signal.sp), .link = place(at_signal.regs[link_register])};
 #elif defined(__APPLE__) && defined(__x86_64__)
-    return reinterpret_cast<void*>(registers_of(signal_context).__rsp);
+    return {.counter = place(at_signal->__ss.__rip), .stack = place(at_signal->__ss.__rsp)};
 #elif defined(__APPLE__)
-    return reinterpret_cast<void*>(registers_of(signal_context).__sp);
+    return {.counter = place(at_signal->__ss.__pc),
+            .stack = place(at_signal->__ss.__sp),
+            .link = place(at_signal->__ss.__lr)};
 #else
-    return nullptr;
+    return {};
 #endif
 }
 
 /// Both the stack pointer and the faulting address are at or beyond the end of the stack.
 bool is_stack_overflow(Stack const& stack, siginfo_t const& info, void const* signal_context) {
-    auto const pointer = reinterpret_cast<std::uintptr_t>(stack_pointer(signal_context));
+    auto const pointer = reinterpret_cast<std::uintptr_t>(registers_of(signal_context).stack);
     auto const touched = reinterpret_cast<std::uintptr_t>(info.si_addr);
     std::uintptr_t const first = stack.end + std::min(kStackMarginBytes, stack.bytes / 4);
     return stack.end > 0 && pointer != 0 && pointer < first && touched < first && touched + kStackMarginBytes > pointer;
@@ -121,36 +126,17 @@ CrashText crash_name(int signal, siginfo_t const& info, void const* signal_conte
     return text;
 }
 
-void const* return_address([[maybe_unused]] void const* signal_context) {
-#if defined(__linux__) && defined(__x86_64__)
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address on the stack
-    return *reinterpret_cast<void* const*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RSP]);
-#elif defined(__linux__) && defined(__aarch64__)
-    constexpr int kLinkRegister = 30;
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): a call leaves its return address in a register
-    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.regs[kLinkRegister]);
-#elif defined(__APPLE__) && defined(__x86_64__)
-    return *reinterpret_cast<void* const*>(registers_of(signal_context).__rsp);
-#elif defined(__APPLE__)
-    return reinterpret_cast<void*>(registers_of(signal_context).__lr);
+void const* return_address(void const* signal_context) {
+    Registers const registers = registers_of(signal_context);
+#ifdef __x86_64__
+    return *static_cast<void* const*>(registers.stack);  // where calls leave it
 #else
-    return nullptr;
+    return registers.link;
 #endif
 }
 
-void* program_counter([[maybe_unused]] void const* signal_context) {
-#if defined(__linux__) && defined(__x86_64__)
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system hands out an address
-    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.gregs[REG_RIP]);
-#elif defined(__linux__) && defined(__aarch64__)
-    return reinterpret_cast<void*>(static_cast<ucontext_t const*>(signal_context)->uc_mcontext.pc);
-#elif defined(__APPLE__) && defined(__x86_64__)
-    return reinterpret_cast<void*>(registers_of(signal_context).__rip);
-#elif defined(__APPLE__)
-    return reinterpret_cast<void*>(registers_of(signal_context).__pc);
-#else
-    return nullptr;
-#endif
+void* program_counter(void const* signal_context) {
+    return registers_of(signal_context).counter;
 }
 
 }  // namespace pogosim
