@@ -43,7 +43,7 @@ struct Constructors {
 /// Returns the static objects of a program in memory; null: it has none to construct.
 std::shared_ptr<Constructors const> constructors_of(pogosim_program const& program);
 
-/// Copies the list of constructors, so that it outlives a program that is unloaded.
+/// Forgets what was noted of a program.
 void forget_constructors_of(pogosim_program const& program);
 
 /// Makes the variables in these pieces of memory what they were before, and constructs the objects in them.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -159,6 +160,13 @@ std::span<char const> part_for(std::span<char const> bytes, MachOProcessor proce
     return {};
 }
 
+/// None: this is no file for that processor.
+std::optional<Header> header_for(std::span<char const> bytes, MachOProcessor processor) {
+    auto const header = read<Header>(bytes, 0);
+    bool const fits = header && header->magic == kMagic && header->processor == static_cast<std::uint32_t>(processor);
+    return fits ? header : std::nullopt;
+}
+
 void add_segment(MachOFile& file, std::span<char const> bytes, std::uint64_t offset, std::uint32_t command_bytes) {
     auto const segment = read<SegmentCommand>(bytes, offset);
     if (!segment || command_bytes < sizeof(SegmentCommand)) {
@@ -219,8 +227,11 @@ void add_command(MachOFile& file, std::span<char const> bytes, std::uint64_t off
 
 MachOFile mach_o_file(std::span<char const> bytes, MachOProcessor processor) {
     MachOFile file{.bytes = part_for(bytes, processor)};
-    auto const header = read<Header>(file.bytes, 0);
-    if (!header || header->magic != kMagic || header->processor != static_cast<std::uint32_t>(processor)) {
+    auto const header = header_for(file.bytes, processor);
+    if (!header) {
+        constexpr std::array all{MachOProcessor::x86_64, MachOProcessor::arm64};
+        file.is_for_other_processor = std::ranges::any_of(
+            all, [&](MachOProcessor other) { return header_for(part_for(bytes, other), other).has_value(); });
         return file;
     }
     file.is_known = true;
@@ -279,14 +290,11 @@ std::vector<MachOSymbol> MachOFile::symbols() const {
     return found;
 }
 
-std::string problem_of_mach_o(std::span<char const> bytes, MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
+std::string problem_of_mach_o(MachOFile const& file) {
+    if (file.is_for_other_processor) {
+        return "is for another processor than this Pogosim: build it again here";
+    }
     if (!file.is_known) {
-        for (MachOProcessor const other : {MachOProcessor::x86_64, MachOProcessor::arm64}) {
-            if (other != processor && mach_o_file(bytes, other).is_known) {
-                return "is for another processor than this Pogosim: build it again here";
-            }
-        }
         return "is no shared object: make one with 'make sim', or with 'cc -shared -fPIC'";
     }
     if (file.type == MachOFile::kExecutable) {

@@ -66,7 +66,8 @@ struct MachOSymbol {
 
 struct MachOFile {
     std::span<char const> bytes{};  // of the one for the processor
-    bool is_known = false;          // false: it is no such file
+    bool is_known = false;          // false: it is no such file, or for another processor
+    bool is_for_other_processor = false;
     std::uint32_t type = 0;
     std::vector<MachOSegment> segments{};
     std::vector<MachOSection> sections{};
@@ -94,6 +95,6 @@ MachOFile mach_o_file(std::span<char const> bytes, MachOProcessor processor = kO
 MachOFile mach_o_in_memory(void const* header);
 
 /// The reason why a file cannot be loaded as a program; empty: there is none.
-std::string problem_of_mach_o(std::span<char const> bytes, MachOProcessor processor = kOwnProcessor);
+std::string problem_of_mach_o(MachOFile const& file);
 
 }  // namespace pogosim

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 namespace pogosim {
 
@@ -94,7 +95,7 @@ public:
 
     std::size_t bytes() const { return offsets_.empty() ? 0 : end_ - std::min(end_, *offsets_.begin()); }
 
-    /// Of the variable with this descriptor; 0: the file does not say.
+    /// The size of the variable with this descriptor; 0: the file does not say.
     std::size_t bytes_of(Section const& section, std::uint64_t address) const {
         std::span<char const> const content = file_.content(section);
         std::uint64_t const at = address - section.address;
@@ -138,7 +139,7 @@ std::string format_in(MachOFile const& file) {
     return "";
 }
 
-/// What the compiler's code needs in every program, and variables of the simulator's that threads have.
+/// Left out: what the compiler's code needs in every program, and thread-local variables of the simulator.
 bool is_import(MachOSymbol const& symbol) {
     bool const is_of_simulator = symbol.library.find("libpogosim.") != std::string_view::npos;
     return !symbol.is_defined && symbol.is_external && !is_of_simulator && symbol.name != "_tlv_bootstrap" &&
@@ -147,9 +148,8 @@ bool is_import(MachOSymbol const& symbol) {
 
 }  // namespace
 
-ProgramSymbols mach_o_symbols(std::span<char const> bytes, MachOProcessor processor) {
+ProgramSymbols mach_o_symbols(MachOFile const& file) {
     ProgramSymbols found;
-    MachOFile const file = mach_o_file(bytes, processor);
     std::vector<MachOSymbol> const symbols = file.symbols();
     Places const places(file, symbols);
     ThreadVariables const threads(file);
@@ -186,7 +186,7 @@ ProgramSymbols mach_o_symbols(std::span<char const> bytes, MachOProcessor proces
 
 namespace {
 
-/// Calls see(symbol, section) for each function that is in the file.
+/// Calls see(symbol) for each function that is in the file.
 template <class See>
 void for_each_function(MachOFile const& file, std::vector<MachOSymbol> const& symbols, See const& see) {
     for (MachOSymbol const& symbol : symbols) {
@@ -199,8 +199,7 @@ void for_each_function(MachOFile const& file, std::vector<MachOSymbol> const& sy
 
 }  // namespace
 
-std::vector<ProgramFunction> mach_o_functions(std::span<char const> bytes, MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
+std::vector<ProgramFunction> mach_o_functions(MachOFile const& file) {
     std::vector<ProgramFunction> functions;
     for_each_function(file, file.symbols(), [&](MachOSymbol const& symbol) {
         functions.push_back({.symbol = std::string(symbol.name), .address = symbol.address - file.address});
@@ -208,8 +207,7 @@ std::vector<ProgramFunction> mach_o_functions(std::span<char const> bytes, MachO
     return functions;
 }
 
-std::string mach_o_function_at(std::span<char const> bytes, std::uintptr_t address, MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
+std::string mach_o_function_at(MachOFile const& file, std::uintptr_t address) {
     std::vector<MachOSymbol> const symbols = file.symbols();
     Places const places(file, symbols);
     std::string found;
@@ -222,9 +220,7 @@ std::string mach_o_function_at(std::span<char const> bytes, std::uintptr_t addre
     return found;
 }
 
-std::vector<std::string> mach_o_texts(std::span<char const> bytes, std::string_view part_of_name,
-                                      MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
+std::vector<std::string> mach_o_texts(MachOFile const& file, std::string_view part_of_name) {
     std::vector<std::string> found;
     for (MachOSymbol const& symbol : file.symbols()) {
         Section const* const section = section_of(file, symbol);
@@ -240,8 +236,7 @@ std::vector<std::string> mach_o_texts(std::span<char const> bytes, std::string_v
     return found;
 }
 
-std::vector<std::string> mach_o_variables_of_all_copies(std::span<char const> bytes, MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
+std::vector<std::string> mach_o_variables_of_all_copies(MachOFile const& file) {
     std::vector<std::string> found;
     for (MachOSymbol const& symbol : file.symbols()) {
         Section const* const section = section_of(file, symbol);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,16 +12,13 @@
 
 namespace pogosim {
 
-ProgramSymbols mach_o_symbols(std::span<char const> file, MachOProcessor processor = kOwnProcessor);
-std::vector<ProgramFunction> mach_o_functions(std::span<char const> file, MachOProcessor processor = kOwnProcessor);
-std::string mach_o_function_at(std::span<char const> file, std::uintptr_t address,
-                               MachOProcessor processor = kOwnProcessor);
-std::vector<std::string> mach_o_texts(std::span<char const> file, std::string_view part_of_name,
-                                      MachOProcessor processor = kOwnProcessor);
+ProgramSymbols mach_o_symbols(MachOFile const& file);
+std::vector<ProgramFunction> mach_o_functions(MachOFile const& file);
+std::string mach_o_function_at(MachOFile const& file, std::uintptr_t address);
+std::vector<std::string> mach_o_texts(MachOFile const& file, std::string_view part_of_name);
 
 /// The names of variables that the system makes one for all copies of a program in a process: those of inline functions
 /// and templates in C++.
-std::vector<std::string> mach_o_variables_of_all_copies(std::span<char const> file,
-                                                        MachOProcessor processor = kOwnProcessor);
+std::vector<std::string> mach_o_variables_of_all_copies(MachOFile const& file);
 
 }  // namespace pogosim

@@ -216,12 +216,13 @@ struct Copy {
 /// The dynamic linker takes a file of another name for a new one.
 Copy load_copy(std::filesystem::path const& file) {
     std::vector<char> const bytes = content_of(file);
-    if (std::string const problem = problem_of_mach_o(bytes); !problem.empty()) {
+    MachOFile const parts = mach_o_file(bytes);
+    if (std::string const problem = problem_of_mach_o(parts); !problem.empty()) {
         fail(file, problem);
     }
     static std::atomic<unsigned> copies = 0;
     unsigned const number = copies++;
-    if (auto const shared = mach_o_variables_of_all_copies(bytes); number > 0 && !shared.empty()) {
+    if (auto const shared = mach_o_variables_of_all_copies(parts); number > 0 && !shared.empty()) {
         fail(file,
              fmt::format("has variables of inline functions or templates, such as '{}', which on this system are one "
                          "for all runs of a process: make them static, or run it in a process of its own",
@@ -239,7 +240,7 @@ Copy load_copy(std::filesystem::path const& file) {
     if (handle == nullptr) {
         fail(file, fmt::format("cannot be loaded: {}", escaped(problem)));
     }
-    return {.library = {handle, unload}, .symbols = std::make_shared<ProgramSymbols const>(symbols_of(bytes))};
+    return {.library = {handle, unload}, .symbols = std::make_shared<ProgramSymbols const>(mach_o_symbols(parts))};
 }
 
 #endif

@@ -308,19 +308,19 @@ std::vector<std::string> texts_of(std::span<char const> bytes, std::string_view 
 #else
 
 ProgramSymbols symbols_of(std::span<char const> bytes) {
-    return mach_o_symbols(bytes);
+    return mach_o_symbols(mach_o_file(bytes));
 }
 
 std::vector<ProgramFunction> functions_of(std::span<char const> bytes) {
-    return mach_o_functions(bytes);
+    return mach_o_functions(mach_o_file(bytes));
 }
 
 std::string function_at(std::span<char const> bytes, std::uintptr_t address) {
-    return mach_o_function_at(bytes, address);
+    return mach_o_function_at(mach_o_file(bytes), address);
 }
 
 std::vector<std::string> texts_of(std::span<char const> bytes, std::string_view part_of_name) {
-    return mach_o_texts(bytes, part_of_name);
+    return mach_o_texts(mach_o_file(bytes), part_of_name);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // Says what the simulator reads from a program's file of macOS:
 //
 //   mach_o_reader FILE arm64|x86_64             a line for each variable, piece of memory, name that is used, ...
-//   mach_o_reader FILE arm64|x86_64 CHANGES     reads it cut off and changed so many times: says how many it would refuse
+//   mach_o_reader FILE arm64|x86_64 CHANGES     reads it cut off and changed so many times: says how many are refused
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,14 +19,13 @@ namespace {
 
 using namespace pogosim;
 
-void say(std::vector<char> const& bytes, MachOProcessor processor) {
-    MachOFile const file = mach_o_file(bytes, processor);
-    fmt::print("problem {}\n", problem_of_mach_o(bytes, processor));
+void say(MachOFile const& file) {
+    fmt::print("problem {}\n", problem_of_mach_o(file));
     fmt::print("build {}\n", file.build);
     for (std::string_view const library : file.libraries) {
         fmt::print("library {}\n", library);
     }
-    ProgramSymbols const symbols = mach_o_symbols(bytes, processor);
+    ProgramSymbols const symbols = mach_o_symbols(file);
     fmt::print("known {:d} static {:d} threads {} format {}\n", symbols.are_known, symbols.has_static,
                symbols.bytes_of_threads, symbols.allocating_format);
     for (ProgramSymbols::Variable const& variable : symbols.variables) {
@@ -39,26 +38,27 @@ void say(std::vector<char> const& bytes, MachOProcessor processor) {
     for (std::string const& name : symbols.imports) {
         fmt::print("import {}\n", name);
     }
-    for (std::string const& name : mach_o_variables_of_all_copies(bytes, processor)) {
+    for (std::string const& name : mach_o_variables_of_all_copies(file)) {
         fmt::print("copies {}\n", name);
     }
-    for (std::string const& text : mach_o_texts(bytes, "pogosim_configured", processor)) {
+    for (std::string const& text : mach_o_texts(file, "pogosim_configured")) {
         fmt::print("text {}\n", text);
     }
-    for (ProgramFunction const& function : mach_o_functions(bytes, processor)) {
+    for (ProgramFunction const& function : mach_o_functions(file)) {
         constexpr std::uintptr_t inside = 1;
         fmt::print("function {} {:d}\n", function.name(),
-                   mach_o_function_at(bytes, function.address + inside, processor) == function.symbol);
+                   mach_o_function_at(file, function.address + inside) == function.symbol);
     }
 }
 
 /// Reads all, as say() does. Returns whether the file would be refused.
 bool is_refused(std::vector<char> const& bytes, MachOProcessor processor) {
-    mach_o_symbols(bytes, processor);
-    mach_o_variables_of_all_copies(bytes, processor);
-    mach_o_texts(bytes, "pogosim_configured", processor);
-    mach_o_function_at(bytes, bytes.size() / 2, processor);
-    return !problem_of_mach_o(bytes, processor).empty();
+    MachOFile const file = mach_o_file(bytes, processor);
+    mach_o_symbols(file);
+    mach_o_variables_of_all_copies(file);
+    mach_o_texts(file, "pogosim_configured");
+    mach_o_function_at(file, bytes.size() / 2);
+    return !problem_of_mach_o(file).empty();
 }
 
 void say_of_changes(std::vector<char> const& bytes, MachOProcessor processor, int changes) {
@@ -91,6 +91,6 @@ int main(int argc, char** argv) {
     if (argc > 3) {
         say_of_changes(bytes, processor, std::atoi(argv[3]));
     } else {
-        say(bytes, processor);
+        say(mach_o_file(bytes, processor));
     }
 }
