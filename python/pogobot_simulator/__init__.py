@@ -8,7 +8,9 @@ other, and uninstalling one removes files of both. This module has a name of its
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 DISTRIBUTION = "pogobot_simulator"  # pogobot-simulator, as folders of metadata have it
@@ -20,8 +22,9 @@ MEND = f"{sys.executable} -m pip uninstall pogosim pogobot-simulator, then insta
 
 def metadata_of(name: str, folder: Path) -> list[Path]:
     """Return the metadata of the distributions of a name that are installed in a folder; usually one or none."""
-    found = (path for path in folder.iterdir() if path.name.startswith((f"{name}-", f"{name}.egg")))
-    return sorted(path for path in found if path.suffix in (".dist-info", ".egg-info"))
+    with os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if entry.name.startswith((f"{name}-", f"{name}.egg"))]
+    return sorted(folder / file for file in names if file.endswith((".dist-info", ".egg-info")))
 
 
 def recorded(metadata: Path) -> dict[str, str]:
@@ -54,49 +57,61 @@ def hash_of(file: Path) -> str:
 def replaced(metadata: Path) -> list[str]:
     """Return which modules of this package another distribution in the same folder has replaced by its own."""
     theirs = recorded(metadata)
-    own = [recorded(found) for found in metadata_of(DISTRIBUTION, metadata.parent)]
     return [
         path
-        for files in own
-        for path, digest in files.items()
+        for own in metadata_of(DISTRIBUTION, metadata.parent)
+        for path, digest in recorded(own).items()
         if theirs.get(path, digest) != digest and hash_of(metadata.parent / path) == theirs[path]
     ]
 
 
-def told(metadata: Path) -> str:
+def described(metadata: Path) -> str:
     """Return the name and the version of another distribution, and what it is."""
     name = metadata.name.removesuffix(".dist-info").removesuffix(".egg-info").replace("-", " ", 1)
     is_older = "pogosim/simulation/__init__.py" in recorded(metadata)
     return f"'{name}', {'this program by its former name' if is_older else 'another program'},"
 
 
-def beside(folder: Path) -> str | None:
-    """Return what is wrong if a distribution named pogosim is installed in the folder of this package; else None."""
-    for metadata in metadata_of(OTHER, folder):
-        return f"{told(metadata)} is installed in the same folder, {folder}, and may remove files of this one: {MEND}"
+def beside(others: Sequence[Path]) -> str | None:
+    """Return what is wrong if distributions named pogosim are installed in the folder of this package; else None.
+
+    Args:
+        others: Their metadata.
+    """
+    if not others:
+        return None
+    folder = others[0].parent
+    return f"{described(others[0])} is installed in the same folder, {folder}, and may remove files of this one: {MEND}"
+
+
+def mixed(others: Sequence[Path]) -> str | None:
+    """Return what is wrong if the package `pogosim` is partly that of another distribution; else None.
+
+    Args:
+        others: Metadata of distributions named pogosim in its folder.
+    """
+    for other in others:
+        if files := replaced(other):
+            count = f"{len(files)} files of this one in {other.parent}"
+            return f"{described(other)} has replaced {count}, such as {files[0]}: {MEND}"
     return None
 
 
-def mixed(folder: Path) -> str | None:
-    """Return what is wrong if the package `pogosim` in a folder is partly that of another distribution; else None."""
-    for metadata in metadata_of(OTHER, folder):
-        if files := replaced(metadata):
-            return (
-                f"{told(metadata)} has replaced {len(files)} files of this one in {folder}, such as {files[0]}: {MEND}"
-            )
-    return None
+# Distributions named pogosim in the folder of this package, usually none. Listing site-packages takes time, so it is
+# done once for a command and what it imports.
+OTHERS = metadata_of(OTHER, FOLDER)
 
 
-def obstacle(folder: Path = FOLDER) -> str | None:
+def obstacle() -> str | None:
     """Return why commands cannot work, in one line: the package that they would import is another. None if they can."""
-    own = folder / "pogosim" / "__init__.py"
+    own = FOLDER / "pogosim" / "__init__.py"
     if not own.is_file():
         return f"files are missing in {own.parent}: uninstalling 'pogosim' has removed files of this one, too: {MEND}"
     spec = importlib.util.find_spec("pogosim")
     found = spec and spec.origin
     if found and not own.samefile(found):
         return f"Python finds another package named pogosim first, {found}: see PYTHONPATH and pip list, or {MEND}"
-    return mixed(folder)
+    return mixed(OTHERS)
 
 
 def run(prog: str, function: str) -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import os
 import warnings
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pogobot_simulator
@@ -24,11 +23,10 @@ IS_INLINE = os.environ.get("MPLBACKEND", "").startswith("module://matplotlib_inl
 if IS_INLINE and importlib.util.find_spec("matplotlib_inline") is None:
     os.environ["MPLBACKEND"] = "agg"
 
-_FOLDER = Path(__file__).resolve().parents[1]
-if _problem := pogobot_simulator.mixed(_FOLDER):
+if _problem := pogobot_simulator.mixed(pogobot_simulator.OTHERS):
     raise ImportError(_problem)
-if _problem := pogobot_simulator.beside(_FOLDER):
-    warnings.warn_explicit(_problem, UserWarning, str(_FOLDER / "pogosim"), 1)
+if _problem := pogobot_simulator.beside(pogobot_simulator.OTHERS):
+    warnings.warn_explicit(_problem, UserWarning, str(pogobot_simulator.FOLDER / "pogosim"), 1)
 
 # A copy of that in include/pogosim/version.h: no build succeeds with another one, see cmake/version.cmake.
 __version__ = "0.11.0"
