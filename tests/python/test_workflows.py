@@ -311,5 +311,5 @@ def test_tools_that_publish_are_pinned() -> None:
     assert [line for line in lines if not re.match(r"[\w-]+==[\w.]+ .*--hash=sha256:[0-9a-f]{64}", line)] == []
     assert any(line.startswith("twine==") for line in lines)
     assert "--require-hashes" in (ROOT / ".ci" / "publish").read_text()
-    tools = re.findall(r"\b(auditwheel|ziglang)(\S*)", (ROOT / "scripts" / "make_wheel.sh").read_text())
+    tools = re.findall(r"\b(auditwheel|ziglang)(\S*)", (ROOT / "scripts" / "bootstrap.sh").read_text())
     assert {name for name, version in tools if re.fullmatch(r"==[\d.]+", version)} == {"auditwheel", "ziglang"}
