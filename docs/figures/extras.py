@@ -18,6 +18,7 @@ PURPOSES = {
     "watch": "[`pogosim watch`](live.md#in-a-browser)",
     "notebook": "[live views in notebooks](live.md#in-a-notebook)",
     "learning": "[learning](learning.md)",
+    "policy": "[policies in `.onnx` files](policy_export.md#files)",
     "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`",
 }
 

@@ -16,6 +16,7 @@ EXTRAS = {
     "watch": ("websockets>=14",),
     "notebook": ("anywidget>=0.9",),
     "learning": ("gymnasium>=1.0,<2", "pettingzoo>=1.25,<2"),
+    "policy": ("onnx>=1.16",),
     "optim": ("optuna>=4.0", "ribs>=0.12"),  # its name in the original simulator
     "optimize": ("optuna>=4.0", "ribs>=0.12"),
 }

@@ -1,0 +1,338 @@
+"""A policy as data: the layers of a small neural network, and how its inputs and outputs are scaled.
+
+    normalised input = (input - input_offset) * input_scale
+    output           = value of the last layer * output_scale + output_offset
+
+Inputs are in units of the robot's functions, such as counts of a photosensor; so are outputs, such as powers of motors.
+Numbers are floats of 32 bits, as on the robot.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.nearest_name import unknown
+from pogosim.policy.errors import PolicyError
+
+Floats = npt.NDArray[np.float32]
+Numbers = npt.NDArray[Any]  # of layers: floats of 32 bits once they are checked
+
+ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")  # hardtanh: cut to -1 to 1
+MOST_UNITS = 4096  # of a layer
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")  # a name in C
+
+
+@dataclass(frozen=True)
+class Dense:
+    """A layer whose units see all values before it: activation(weights x + bias).
+
+    Attributes:
+        weights: Shape (units, values before).
+        bias: Shape (units,).
+        activation: One of ACTIVATIONS.
+    """
+
+    weights: Numbers
+    bias: Numbers
+    activation: str
+    kind = "dense"
+
+    @property
+    def units(self) -> int:
+        """Values that the layer gives."""
+        return len(self.bias)
+
+
+@dataclass(frozen=True)
+class Elman:
+    """A recurrent layer: h becomes activation(weights x + recurrent_weights h + bias), and is what it gives.
+
+    Attributes:
+        weights: Shape (units, values before).
+        recurrent_weights: Shape (units, units).
+        bias: Shape (units,).
+        activation: One of ACTIVATIONS.
+    """
+
+    weights: Numbers
+    recurrent_weights: Numbers
+    bias: Numbers
+    activation: str
+    kind = "elman"
+
+    @property
+    def units(self) -> int:
+        """Values that the layer gives."""
+        return len(self.bias)
+
+
+@dataclass(frozen=True)
+class Gru:
+    """A gated recurrent layer, with the parameters of PyTorch's nn.GRU.
+
+    It gives h, which becomes n + z (h - n), where
+
+        r = sigmoid(W_r x + b_r + U_r h + c_r)        z = sigmoid(W_z x + b_z + U_z h + c_z)
+        n = tanh(W_n x + b_n + r (U_n h + c_n))
+
+    Attributes:
+        weights: W_r, W_z and W_n below each other. Shape (3 units, values before).
+        recurrent_weights: U, likewise. Shape (3 units, units).
+        bias: b, likewise. Shape (3 units,).
+        recurrent_bias: c, likewise. Shape (3 units,).
+    """
+
+    weights: Numbers
+    recurrent_weights: Numbers
+    bias: Numbers
+    recurrent_bias: Numbers
+    kind = "gru"
+
+    @property
+    def units(self) -> int:
+        """Values that the layer gives."""
+        return len(self.bias) // 3
+
+
+Layer = Dense | Elman | Gru
+GATES = {"dense": 1, "elman": 1, "gru": 3}  # rows of weights for each unit, by kind
+
+
+@dataclass(frozen=True)
+class Network:
+    """A policy.
+
+    Attributes:
+        layers: From the inputs to the outputs.
+        input_names: What the inputs are, names in C.
+        output_names: What the outputs are, names in C.
+        input_offset: Shape (inputs,).
+        input_scale: Shape (inputs,).
+        output_scale: Shape (outputs,).
+        output_offset: Shape (outputs,).
+        input_range: Least and greatest value of each input, in its unit; NaN where they are unknown. Shape (inputs, 2).
+    """
+
+    layers: tuple[Layer, ...]
+    input_names: tuple[str, ...]
+    output_names: tuple[str, ...]
+    input_offset: Floats
+    input_scale: Floats
+    output_scale: Floats
+    output_offset: Floats
+    input_range: Floats = field(repr=False)
+
+    @property
+    def inputs(self) -> int:
+        """Number of inputs."""
+        return len(self.input_names)
+
+    @property
+    def outputs(self) -> int:
+        """Number of outputs."""
+        return len(self.output_names)
+
+    @property
+    def is_recurrent(self) -> bool:
+        """Whether a layer remembers something from one call to the next."""
+        return any(layer.kind != "dense" for layer in self.layers)
+
+    @property
+    def state_units(self) -> int:
+        """Values that are remembered."""
+        return sum(layer.units for layer in self.layers if layer.kind != "dense")
+
+    def describe(self) -> str:
+        """Return the policy in a line: "3 inputs, 8 tanh, 2 hardtanh"."""
+        layers = (f"{layer.units} {'GRU' if isinstance(layer, Gru) else layer.activation}" for layer in self.layers)
+        kinds = (" (Elman)" if layer.kind == "elman" else "" for layer in self.layers)
+        parts = [text + kind for text, kind in zip(layers, kinds, strict=True)]
+        return ", ".join([f"{self.inputs} input{'s' * (self.inputs != 1)}", *parts])
+
+
+def network_of(
+    layers: Sequence[Layer],
+    *,
+    input_names: Sequence[str] | None = None,
+    output_names: Sequence[str] | None = None,
+    input_offset: npt.ArrayLike = 0.0,
+    input_scale: npt.ArrayLike = 1.0,
+    output_scale: npt.ArrayLike = 1.0,
+    output_offset: npt.ArrayLike = 0.0,
+    input_low: npt.ArrayLike = np.nan,
+    input_high: npt.ArrayLike = np.nan,
+    place: str = "the policy",
+) -> Network:
+    """Make a policy of its layers, and check it.
+
+    Args:
+        layers: From the inputs to the outputs; at least one.
+        input_names: Names of the inputs, as in C; None: x0, x1, ...
+        output_names: Names of the outputs, likewise; None: y0, y1, ...
+        input_offset: Offset of each input, or one for all.
+        input_scale: Scale of each input, or one for all; not 0.
+        output_scale: Scale of each output, or one for all.
+        output_offset: Offset of each output, or one for all.
+        input_low: Least value of each input, or one for all; NaN: unknown.
+        input_high: Greatest value, likewise.
+        place: Where the policy is from, for messages.
+
+    Raises:
+        PolicyError: Shapes do not fit, a number is not finite, a name is no name, or an activation is unknown.
+    """
+    if not layers:
+        raise PolicyError(f"{place} has no layers; expected one at least")
+    checked: list[Layer] = []
+    before = None
+    for number, layer in enumerate(layers):
+        checked.append(checked_layer(layer, before, f"{place}: layer {number}"))
+        before = checked[-1].units
+    inputs, outputs = checked[0].weights.shape[1], checked[-1].units
+    scale = vector(input_scale, inputs, f"{place}: input_scale")
+    if not scale.all():
+        raise PolicyError(f"{place}: input_scale[{int(np.argmin(np.abs(scale)))}] is 0; leave that input out instead")
+    return Network(
+        tuple(checked),
+        names(input_names, inputs, "input", place),
+        names(output_names, outputs, "output", place),
+        vector(input_offset, inputs, f"{place}: input_offset"),
+        scale,
+        vector(output_scale, outputs, f"{place}: output_scale"),
+        vector(output_offset, outputs, f"{place}: output_offset"),
+        checked_range(input_low, input_high, inputs, place),
+    )
+
+
+def checked_layer(layer: Layer, before: int | None, place: str) -> Layer:
+    """Check a layer after one of `before` units (None: the first); returns it with floats of 32 bits.
+
+    Raises:
+        PolicyError: Shapes do not fit, or it has something else than finite numbers.
+    """
+    gates = GATES[layer.kind]
+    weights = numbers(layer.weights, f"{place}: weights")
+    if weights.ndim != 2 or 0 in weights.shape or len(weights) % gates:
+        rows = "(units, inputs)" if gates == 1 else f"({gates} units, inputs)"
+        raise PolicyError(f"{place}: weights have the shape {weights.shape}; expected {rows}")
+    rows, columns = weights.shape
+    units = rows // gates
+    if max(units, columns) > MOST_UNITS:
+        raise PolicyError(f"{place} has {units} units with {columns} inputs; expected {MOST_UNITS} of each at most")
+    if before is not None and columns != before:
+        raise PolicyError(
+            f"{place}: weights have the shape {weights.shape}, which takes {columns} values; the layer before gives "
+            f"{before}. Weights are of shape (units, inputs): transposed?"
+        )
+    bias = shaped(layer.bias, (rows,), f"{place}: bias")
+    if isinstance(layer, Dense):
+        return Dense(weights, bias, activation(layer.activation, place))
+    recurrent = shaped(layer.recurrent_weights, (rows, units), f"{place}: recurrent_weights")
+    if isinstance(layer, Elman):
+        return Elman(weights, recurrent, bias, activation(layer.activation, place))
+    return Gru(weights, recurrent, bias, shaped(layer.recurrent_bias, (rows,), f"{place}: recurrent_bias"))
+
+
+def activation(name: str, place: str) -> str:
+    """Return the name of an activation.
+
+    Raises:
+        PolicyError: There is none of that name.
+    """
+    if name not in ACTIVATIONS:
+        everything = f"expected one of {', '.join(ACTIVATIONS)}"
+        raise PolicyError(f"{place}: {unknown('activation', name, ACTIVATIONS, everything)}")
+    return name
+
+
+def numbers(values: npt.ArrayLike, place: str) -> Floats:
+    """Return an array of finite floats of 32 bits.
+
+    Raises:
+        PolicyError: They are something else.
+    """
+    found = np.asarray(values)
+    if found.dtype.kind not in "fiu":
+        raise PolicyError(f"{place}: expected numbers, found an array of {found.dtype}")
+    with np.errstate(over="ignore", invalid="ignore"):
+        made = found.astype(np.float32)
+    if not np.isfinite(made).all():
+        index = [int(one) for one in np.argwhere(~np.isfinite(made))[0]]
+        raise PolicyError(f"{place}{index or ''}: expected a finite number of 32 bits, found {found[tuple(index)]}")
+    return made
+
+
+def shaped(values: npt.ArrayLike, shape: tuple[int, ...], place: str) -> Floats:
+    """Return an array of finite floats of this shape.
+
+    Raises:
+        PolicyError: They are something else.
+    """
+    found = numbers(values, place)
+    if found.shape != shape:
+        raise PolicyError(f"{place} has the shape {found.shape}; expected {shape}")
+    return found
+
+
+def vector(values: npt.ArrayLike, length: int, place: str) -> Floats:
+    """Return as many finite numbers, of one for all or one for each.
+
+    Raises:
+        PolicyError: They are something else.
+    """
+    found = numbers(values, place)
+    if found.shape not in ((), (length,)):
+        raise PolicyError(f"{place} has the shape {found.shape}; expected ({length},), or one number for all")
+    return np.array(np.broadcast_to(found, (length,)))
+
+
+def names(given: Sequence[str] | None, count: int, what: str, place: str) -> tuple[str, ...]:
+    """Return the names of inputs or outputs; numbers for names where there are none.
+
+    Raises:
+        PolicyError: There are too few or too many, or they are no names in C, or two are the same.
+    """
+    if given is None:
+        return tuple(f"{'x' if what == 'input' else 'y'}{number}" for number in range(count))
+    found = tuple(str(name) for name in given)
+    if len(found) != count:
+        raise PolicyError(f"{place}: {what}_names has {len(found)} names; expected one for each of the {count} {what}s")
+    for number, name in enumerate(found):
+        if not NAME.fullmatch(name):
+            raise PolicyError(
+                f"{place}: {what}_names[{number}] is {name!r}; expected a name as in C: a letter, then up to 62 "
+                "letters, digits or _"
+            )
+        if name.upper() in {other.upper() for other in found[:number]}:
+            raise PolicyError(f"{place}: {what}_names has {name!r} twice, in capitals; expected different names")
+    return found
+
+
+def checked_range(low: npt.ArrayLike, high: npt.ArrayLike, inputs: int, place: str) -> Floats:
+    """Return the ranges of inputs, shape (inputs, 2); NaN where they are unknown.
+
+    Raises:
+        PolicyError: One is empty, or has one end only.
+    """
+    ends = []
+    for name, values in (("input_low", low), ("input_high", high)):
+        found = np.asarray(values)
+        if found.dtype.kind not in "fiu" or found.shape not in ((), (inputs,)):
+            what = f"an array of {found.dtype} of shape {found.shape}"
+            raise PolicyError(f"{place}: {name}: expected {inputs} numbers, or one for all, found {what}")
+        with np.errstate(over="ignore"):
+            ends.append(np.broadcast_to(found.astype(np.float32), (inputs,)))
+    made = np.stack(ends, axis=1)
+    for number, (least, most) in enumerate(made):
+        is_known = not (np.isnan(least) and np.isnan(most))
+        if is_known and not (np.isfinite([least, most]).all() and least < most):
+            raise PolicyError(
+                f"{place}: input {number} ranges from {least:g} to {most:g}; expected two finite numbers, of which "
+                "input_low is the smaller one"
+            )
+    return made

@@ -1,0 +1,218 @@
+"""Policies do in floats, and within a proven bound in whole numbers, what exact arithmetic says."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+import random_policies
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pogosim.policy import Dense, Policy, PolicyError, float_arithmetic, network_of, tanh_table
+from pogosim.policy import fixed_point as fixed_point_module
+from pogosim.policy.fixed_point import MOST_SUM, MOST_VALUE, ONE
+from random_policies import ALL, Kind, exact_step, observations, random_network
+
+ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")
+OF_ELMAN = ("hardtanh", "tanh", "sigmoid")
+
+
+@st.composite
+def chains(draw: st.DrawFn) -> tuple[Kind, ...]:
+    """Draw up to three layers; values that are not bounded come from bounded ones."""
+    made: list[Kind] = []
+    for _ in range(draw(st.integers(1, 3))):
+        kind = draw(st.sampled_from(("dense", "dense", "elman", "gru")))
+        units = draw(st.integers(1, 6))
+        made.append((kind, units, draw(st.sampled_from(OF_ELMAN if kind == "elman" else ACTIVATIONS))))
+    return tuple(made)
+
+
+@given(chains(), st.integers(0, 10**6), st.sampled_from((0.05, 0.5, 3.0)))
+@settings(max_examples=60, deadline=None)
+def test_floats_are_those_of_exact_arithmetic_but_for_their_digits(
+    kinds: Sequence[Kind], seed: int, size: float
+) -> None:
+    network = random_network(kinds, seed, size)
+    policy = Policy(network)
+    rows = observations(20, seed)
+    for _ in range(3):
+        before = np.zeros((20, network.state_units)) if policy.state is None else policy.state.astype(float)
+        exact, _ = exact_step(network, rows, before)
+        found = policy.step(rows)
+        largest = 1000 * max(1.0, float(np.abs(exact / 1000).max()))
+        assert np.abs(found - exact).max() < 1e-5 * size * largest + 2e-6 * largest
+
+
+@given(chains(), st.integers(0, 10**6), st.sampled_from((0.05, 0.5, 3.0)), st.sampled_from(("int8", "int16")))
+@settings(max_examples=100, deadline=None)
+def test_whole_numbers_are_within_their_bound_of_exact_arithmetic(
+    kinds: Sequence[Kind], seed: int, size: float, numbers: str
+) -> None:
+    network = random_network(kinds, seed, size)
+    try:
+        policy = Policy(network, numbers=numbers)
+    except PolicyError as error:  # relu after relu with large weights
+        assert re.search("layer .* too large|values of a layer may reach|outputs may reach", str(error))
+        return
+    assert policy.fixed is not None
+    rows = observations(50, seed)
+    rows[:8] = np.stack(np.meshgrid(*[[random_policies.LOW, random_policies.HIGH]] * 3), axis=-1).reshape(8, 3)
+    for _ in range(3):
+        before = np.zeros((50, network.state_units)) if policy.state is None else policy.state / ONE
+        exact, _ = exact_step(network, rows, before)
+        off = np.abs(policy.step(rows) - exact).max(axis=0)
+        assert (off <= policy.fixed.error_bound).all()
+
+
+@given(chains(), st.integers(0, 10**6), st.sampled_from((0.5, 3.0, 40.0)), st.sampled_from(("int8", "int16")))
+@settings(max_examples=60, deadline=None)
+def test_no_sum_or_value_leaves_its_type(kinds: Sequence[Kind], seed: int, size: float, numbers: str) -> None:
+    """Checked where it would be cut or shifted, at the ends of all inputs, beyond them and in between."""
+    try:
+        policy = Policy(random_network(kinds, seed, size), numbers=numbers)
+    except PolicyError:
+        return
+    largest: list[int] = []
+    scaled = fixed_point_module.scaled
+
+    def watched(sums: fixed_point_module.Integers, shift: fixed_point_module.Integers, most: int) -> object:
+        largest.append(int(np.abs(sums).max()))
+        return scaled(sums, shift, most)
+
+    rows = np.concatenate([observations(40, seed), np.array(np.meshgrid(*[[-(10**9), 10**9]] * 3)).reshape(3, 8).T])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fixed_point_module, "scaled", watched)
+        for _ in range(3):
+            policy.step(rows)
+    assert max(largest) <= MOST_SUM
+    assert policy.state is not None
+    assert np.abs(policy.state).max(initial=0) <= ONE
+
+
+def test_tables_of_tanh_and_sigmoid_are_within_their_errors() -> None:
+    arguments = np.arange(-MOST_VALUE, MOST_VALUE + 1)
+    tanh = tanh_table.tanh_of(arguments) / ONE
+    assert np.abs(tanh - np.tanh(arguments / 4096)).max() <= fixed_point_module.TABLE_ERROR["tanh"] < 2e-4
+    sigmoid = tanh_table.sigmoid_of(arguments) / ONE
+    assert (
+        np.abs(sigmoid - random_policies.sigmoid(arguments / 2048)).max()
+        <= fixed_point_module.TABLE_ERROR["sigmoid"]
+        < 2e-4
+    )
+    assert (np.diff(tanh) >= 0).all()
+    assert (np.diff(sigmoid) >= 0).all()
+
+
+def test_functions_of_floats_need_no_library_and_are_exact_to_their_digits() -> None:
+    x = np.concatenate([np.linspace(-120, 120, 100_001), [0.0, -0.0, 1e30, -1e30, 1e-30]]).astype(np.float32)
+    with np.errstate(over="ignore"):
+        assert np.abs(float_arithmetic.tanh(x) - np.tanh(x.astype(float))).max() < 2e-7
+        assert np.abs(float_arithmetic.sigmoid(x) - random_policies.sigmoid(x.astype(float))).max() < 2e-7
+
+
+@pytest.mark.parametrize("numbers", ["float", "int16", "int8"])
+@pytest.mark.parametrize("name", ALL)
+def test_swarms_and_runs_are_stepped_as_their_robots_alone(name: str, numbers: str) -> None:
+    network = random_network(ALL[name])
+    together = Policy(network, numbers=numbers)
+    rows = observations(2 * 5 * 3).reshape(3, 2, 5, random_policies.INPUTS)  # steps, runs, robots
+    alone = [Policy(network, numbers=numbers) for _ in range(10)]
+    for step in rows:
+        outputs = together.step(step)
+        assert outputs.shape == (2, 5, 2)
+        expected = [policy.step(row) for policy, row in zip(alone, step.reshape(10, -1), strict=True)]
+        np.testing.assert_array_equal(outputs.reshape(10, 2), expected)
+
+
+def test_reset_forgets_everything_or_some_runs() -> None:
+    network = random_network(ALL["gated"])
+    policy = Policy(network)
+    rows = observations(4).reshape(2, 2, 3)
+    first = policy.step(rows)
+    second = policy.step(rows)
+    assert not np.array_equal(first, second)
+    policy.reset(np.array([True, False]))
+    third = policy.step(rows)
+    np.testing.assert_array_equal(third[0], first[0])
+    assert not np.array_equal(third[1], first[1])
+    policy.reset()
+    np.testing.assert_array_equal(policy.step(rows[0]), first[0])
+
+
+@pytest.mark.parametrize(
+    ("observation", "said"),
+    [
+        (
+            [1, 2],
+            r"observation: expected numbers of shape \(..., 3\): x0, x1, x2; found an array of int64 of shape \(2,\)",
+        ),
+        ("abc", r"observation: expected numbers of shape \(..., 3\): x0, x1, x2; found an array of <U3 of shape \(\)"),
+        ([[1, 2, 3], [1, np.nan, 3]], r"observation\[1, 1\]: expected a finite number, found nan"),
+    ],
+)
+def test_observation_of_another_policy_is_refused(observation: object, said: str) -> None:
+    with pytest.raises(PolicyError, match=said):
+        Policy(random_network(ALL["plain"])).step(observation)  # type: ignore[arg-type]
+
+
+def test_swarm_of_another_size_is_refused_until_the_policy_forgets() -> None:
+    policy = Policy(random_network(ALL["elman"]))
+    policy.step(observations(4))
+    with pytest.raises(
+        PolicyError, match=r"with \(4,\) in front, as in the last step, found \(5, 3\); reset\(\) begins anew"
+    ):
+        policy.step(observations(5))
+    policy.reset()
+    assert policy.step(observations(5)).shape == (5, 2)
+
+
+def test_inputs_beyond_their_range_count_as_its_ends() -> None:
+    policy = Policy(random_network(ALL["plain"]), numbers="int16")
+    np.testing.assert_array_equal(policy.step([9999.0, -1e18, 5]), policy.step([3000, 0, 5]))
+
+
+def test_biases_and_scales_of_the_last_linear_layer_are_exact_where_they_can_be() -> None:
+    layer = Dense(np.array([[2.0, -1.0]], np.float32), np.array([0.5], np.float32), "identity")
+    network = network_of([layer], input_scale=1 / 16, output_scale=32, input_low=0, input_high=100)
+    policy = Policy(network, numbers="int16")
+    assert policy.step([48, 16]).tolist() == [32 * (2 * 3 - 1) + 16]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"input_scale": 1e-9}, r"the input x0 is scaled to .*steps of the numbers of 16 bits"),
+        ({"input_scale": 1e6}, r"the input x0 is scaled to .*; in whole numbers, it may be 32767 at most"),
+        ({"input_high": 1e8}, r"the input x0 ranges from 0 to 100000000; in whole numbers it may range over 1048576"),
+        ({"output_scale": 1e9}, r"layer 1: outputs may reach|layer 1: weights are too large"),
+        (
+            {"input_low": np.nan, "input_high": np.nan},
+            r"the range of the input x0 is unknown; expected observations of a run",
+        ),
+    ],
+)
+def test_what_whole_numbers_cannot_hold_is_refused(changes: dict[str, float], said: str) -> None:
+    layers = (
+        Dense(np.full((4, 2), 0.5, np.float32), np.zeros(4, np.float32), "tanh"),
+        Dense(np.full((1, 4), 5.0, np.float32), np.zeros(1, np.float32), "identity"),
+    )
+    fine = {"input_low": 0, "input_high": 1000, "input_scale": 1e-3}
+    assert Policy(network_of(layers, **fine), numbers="int8").fixed is not None  # type: ignore[arg-type]
+    with pytest.raises(PolicyError, match=said):
+        Policy(network_of(layers, **(fine | changes)), numbers="int8")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("activation", ["relu", "identity"])
+def test_recurrent_layer_that_may_grow_is_for_floats_alone(activation: str) -> None:
+    network = random_network((("elman", 3, activation), ("dense", 1, "tanh")))
+    assert Policy(network).step([1, 2, 3]).shape == (1,)
+    with pytest.raises(PolicyError, match=f"layer 0: a recurrent layer with {activation} may grow without bounds"):
+        Policy(network, numbers="int16")
+
+
+def test_unknown_format_is_refused() -> None:
+    with pytest.raises(PolicyError, match="numbers: expected one of float, int16, int8, found 'int4'"):
+        Policy(random_network(ALL["plain"]), numbers="int4")
