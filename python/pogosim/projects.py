@@ -9,13 +9,16 @@ from pathlib import Path
 
 from pogosim.errors import ToolError
 from pogosim.installation import Installation
+from pogosim.lines import printable_lines, say_error
 
 
 class ProjectError(ToolError):
     """A project cannot be built; says why."""
 
 
-def run_make(folder: Path, target: str, pogosim: Installation, name: Path | None = None) -> None:
+def run_make(
+    folder: Path, target: str, pogosim: Installation, name: Path | None = None, *, is_quiet: bool = False
+) -> None:
     """Run make in a project, with this simulator unless the project or the environment names another one.
 
     Args:
@@ -23,6 +26,7 @@ def run_make(folder: Path, target: str, pogosim: Installation, name: Path | None
         target: What to make.
         pogosim: The simulator.
         name: What the user calls the project; None: its folder.
+        is_quiet: Whether what make says is shown only if it fails.
 
     Raises:
         ProjectError: It fails. make has said why.
@@ -33,8 +37,15 @@ def run_make(folder: Path, target: str, pogosim: Installation, name: Path | None
     for variable in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
         environment.pop(variable, None)
     try:
-        code = subprocess.run(command, check=False, env=environment, stdout=sys.stderr).returncode
+        if is_quiet:
+            done = subprocess.run(
+                command, check=False, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+            )
+        else:
+            done = subprocess.run(command, check=False, env=environment, stdout=sys.stderr)
     except FileNotFoundError:
         raise ProjectError("make is not installed (Debian, Ubuntu: apt install make)") from None
-    if code != 0:
+    if done.returncode != 0:
+        if is_quiet:
+            say_error(*printable_lines(done.stdout.decode(errors="replace")).split("\n"))
         raise ProjectError(f"{name or folder} cannot be built; see the messages above")

@@ -19,6 +19,7 @@ SUBCOMMANDS = (
     "watch",
     "profile",
     "compare-brains",
+    "export-policy",
     "batch",
     "optimize",
     "analyze",

@@ -37,6 +37,7 @@ COMMANDS = Table(
         "compare-brains": Own(
             "pogosim.command.compare_brains:main", "find where a program in C and its firmware begin to differ"
         ),
+        "export-policy": Own("pogosim.command.export_policy:main", "make C for robots of a small neural network"),
         "batch": Own("pogosim.batch.command_line:main", "run a program many times, with every combination of options"),
         "optimize": Own(
             "pogosim.optimize.command:main", "search for the parameters that make an objective as large as possible"

@@ -35,12 +35,13 @@ class Program:
 
 
 @contextlib.contextmanager
-def firmware_of(what: Path, pogosim: Installation) -> Iterator[Program]:
+def firmware_of(what: Path, pogosim: Installation, *, is_quiet: bool = False) -> Iterator[Program]:
     """Make the firmware of a project or a source file, or take one that is there.
 
     Args:
         what: A firmware, the folder of a project, or a .c or .cpp file, whose firmware is removed at the end.
         pogosim: The simulator.
+        is_quiet: Whether what make says is shown only if it fails.
 
     Raises:
         FirmwareError: It is none of these, or the robots' compiler is missing.
@@ -48,12 +49,12 @@ def firmware_of(what: Path, pogosim: Installation) -> Iterator[Program]:
         OSError: It cannot be read, or the temporary project cannot be written.
     """
     if what.is_dir():
-        yield Program(made_in(what, what, pogosim), (what,))
+        yield Program(made_in(what, what, pogosim, is_quiet=is_quiet), (what,))
     elif not what.exists():
         raise FirmwareError(f"there is no firmware, project, source file or profile {what}")
     elif what.suffix in ROBOT_COMPILERS:
         with temporary_project(what, pogosim) as folder:
-            yield Program(made_in(folder, what, pogosim), (what.parent,))
+            yield Program(made_in(folder, what, pogosim, is_quiet=is_quiet), (what.parent,))
     elif is_firmware(what):
         yield Program(what, tuple(folders_of(what)))
     else:
@@ -63,13 +64,14 @@ def firmware_of(what: Path, pogosim: Installation) -> Iterator[Program]:
         )
 
 
-def made_in(folder: Path, what: Path, pogosim: Installation) -> Path:
+def made_in(folder: Path, what: Path, pogosim: Installation, *, is_quiet: bool = False) -> Path:
     """Run `make emu` in a project; returns its firmware.
 
     Args:
         folder: The project.
         what: What the user calls it.
         pogosim: The simulator.
+        is_quiet: Whether what make says is shown only if it fails.
 
     Raises:
         FirmwareError: The robots' compiler is missing, or it is no project that makes firmware.
@@ -84,7 +86,7 @@ def made_in(folder: Path, what: Path, pogosim: Installation) -> Path:
             f"{pogosim.template}"
         )
     check_compiler(folder)
-    run_make(folder, "emu", pogosim, what)
+    run_make(folder, "emu", pogosim, what, is_quiet=is_quiet)
     firmware = folder / FIRMWARE
     if not firmware.is_file():
         raise FirmwareError(f"make emu in {what} has not made {FIRMWARE}; is BUILD_DIR set?")

@@ -1,0 +1,54 @@
+"""Parts of C: numbers, arrays and how many bytes they take."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+WIDTH = 116  # of the lines of an array, without their indentation
+BYTES = {"int8_t": 1, "uint8_t": 1, "int16_t": 2, "int32_t": 4, "float": 4}
+
+
+def literal(value: Any, kind: str) -> str:
+    """Return a number as C of this type writes it."""
+    if kind != "float":
+        return str(int(value))
+    text = f"{float(np.float32(value)):.9g}"
+    return f"{text}f" if any(letter in text for letter in ".e") else f"{text}.0f"
+
+
+@dataclass(frozen=True)
+class Array:
+    """A constant array.
+
+    Attributes:
+        kind: Type of its elements.
+        name: Its name.
+        values: One or two dimensions; at least one element.
+        comment: What stands above it; empty: nothing.
+    """
+
+    kind: str
+    name: str
+    values: npt.NDArray[Any]
+    comment: str = ""
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes."""
+        return int(self.values.size * BYTES[self.kind])
+
+    def lines(self) -> list[str]:
+        """Return its definition."""
+        dimensions = "".join(f"[{size}]" for size in self.values.shape)
+        made = [f"// {self.comment}"] if self.comment else []
+        made.append(f"static {self.kind} const {self.name}{dimensions} = {{")
+        for row in self.values.reshape(-1, self.values.shape[-1]):
+            numbers = ", ".join(literal(value, self.kind) for value in row)
+            text = f"{{{numbers}}}," if self.values.ndim == 2 else f"{numbers},"
+            made += [f"    {line}" for line in textwrap.wrap(text, WIDTH, break_on_hyphens=False)]
+        return [*made, "};"]

@@ -1,0 +1,143 @@
+"""What a call of an exported policy takes on a robot's processor: cycles of a run on an emulated one, and code."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import SymbolTableSection
+
+from pogosim.firmware.making import firmware_of
+from pogosim.firmware.profile.raw import Profile, read_profile
+from pogosim.firmware.profile.running import profile_run
+from pogosim.installation import Installation
+from pogosim.policy.errors import PolicyError
+
+PROGRAM = """#include "pogobase.h"
+#include "exported.h"
+typedef struct {
+    uint32_t ticks;
+    STATE
+} USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+void @probe(@value_t const inputs[], @value_t outputs[]);
+__attribute__((noinline)) void @probe(@value_t const inputs[], @value_t outputs[]) {
+    @step(ARGUMENT inputs, outputs);
+}
+void user_init(void) {
+    if (!@self_test()) {
+        __builtin_trap();
+    }
+}
+void user_step(void) {
+    static volatile @value_t result;
+    @value_t outputs[sizeof(@test_outputs[0]) / sizeof(@value_t)];
+    @probe(@test_inputs[mydata->ticks++ % (sizeof(@test_inputs) / sizeof(@test_inputs[0]))], outputs);
+    result = outputs[0];
+}
+int main(void) {
+    pogobot_init();
+    pogobot_start(user_init, user_step);
+    return 0;
+}
+"""
+CONFIGURATION = """arena_file: arenas/disk.csv
+simulation_time: 0.5
+enable_data_logging: false
+enable_console_logging: false
+objects: {robots: {type: pogobot, nb: 1}}
+"""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What an exported policy takes.
+
+    Attributes:
+        cycles: Cycles of a call, on average, with the compiler's routines that it calls.
+        budget: Cycles between two ticks.
+        code_bytes: Machine code of its functions, without the compiler's routines.
+        stack_bytes: Deepest stack of the program that has called it.
+    """
+
+    cycles: float
+    budget: float
+    code_bytes: int
+    stack_bytes: int
+
+    @property
+    def share(self) -> float:
+        """Share of a tick, 0 to 1 if it fits."""
+        return self.cycles / self.budget
+
+
+def program_of(prefix: str, is_recurrent: bool) -> str:
+    """Return a program that calls a policy in each tick, after its self test."""
+    state = f"{prefix}_state_t policy;" if is_recurrent else ""
+    argument = "&mydata->policy," if is_recurrent else ""
+    return PROGRAM.replace("@", f"{prefix}_").replace("STATE", state).replace("ARGUMENT ", f"{argument} ")
+
+
+def cycles_per_call(profile: Profile, function: str) -> float:
+    """Return the cycles of a call of a function, with all that it calls, on average."""
+    total = calls = 0.0
+    for stack in profile.stacks:
+        names = [profile.functions[frame] for frame in stack.frames]
+        if function in names:
+            total += profile.cost(stack)
+        if names[-1] == function:
+            calls += stack.calls
+    if calls == 0:
+        raise PolicyError(f"the program that measures the policy has not called {function}()")
+    return total / calls
+
+
+def code_bytes(firmware: Path, prefix: str) -> int:
+    """Return the size of the functions whose names begin with a prefix, bytes."""
+    with firmware.open("rb") as file:
+        tables = [part for part in ELFFile(file).iter_sections() if isinstance(part, SymbolTableSection)]
+        return sum(
+            int(symbol["st_size"])
+            for table in tables
+            for symbol in table.iter_symbols()
+            if symbol["st_info"]["type"] == "STT_FUNC" and symbol.name.startswith(f"{prefix}_")
+        )
+
+
+def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation) -> Measured:
+    """Compile a policy for robots, let an emulated one check itself and call it in each tick, and measure it.
+
+    Args:
+        header: The exported policy.
+        prefix: What its names begin with.
+        is_recurrent: Whether it has a state.
+        pogosim: The simulator.
+
+    Raises:
+        FirmwareError: The robots' compiler is missing.
+        ProjectError: It cannot be compiled.
+        PolicyError: The emulated robot's self test has failed.
+        ToolError: The run cannot be profiled.
+        OSError: The temporary folder cannot be written.
+    """
+    with tempfile.TemporaryDirectory(prefix="pogosim-policy-") as name:
+        folder = Path(name)
+        (folder / "exported.h").write_text(header, encoding="utf-8")
+        source = folder / "main.c"
+        source.write_text(program_of(prefix, is_recurrent), encoding="utf-8")
+        configuration = folder / "test.yaml"
+        configuration.write_text(CONFIGURATION, encoding="utf-8")
+        raw = folder / "profile.json"
+        with firmware_of(source, pogosim, is_quiet=True) as made:
+            if profile_run(made.firmware, raw, 1, ["-c", str(configuration)], pogosim) != 0:
+                raise PolicyError(
+                    "the exported policy fails its self test on an emulated robot: see the messages above"
+                )
+            size = code_bytes(made.firmware, prefix)
+        profile = read_profile(raw, "the profile of the policy")
+    budget = profile.budget_cycles
+    assert budget is not None  # it has a main loop
+    return Measured(cycles_per_call(profile, f"{prefix}_probe"), budget, size, profile.deepest_stack_bytes)

@@ -1,0 +1,189 @@
+"""Exported policies compute on computers, in C and C++, and on emulated robots what they compute in Python."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from firmwares import firmware_in, project_of, run_firmware
+from pogosim.policy import Policy, PolicyError
+from pogosim.policy.c_header import header_of
+from pogosim.policy.policy import NUMBERS
+from pogosim.policy.test_vector import vector_of
+from random_policies import ALL, INPUTS, observations, random_network
+from running import compiler
+
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wfloat-conversion", "-Wshadow", "-Werror")
+COMPILERS = [
+    (name, flags)
+    for name, flags in (
+        (compiler("gcc"), ["-std=c99", "-O2"]),
+        (compiler("gcc"), ["-std=c11", "-ffp-contract=off", "-fsanitize=undefined", "-fno-sanitize-recover"]),
+        (compiler("clang", "clang-14"), ["-std=c11", "-O2", "-ffp-contract=off"]),
+        (compiler("g++"), ["-x", "c++", "-std=c++17", "-O2"]),
+    )
+    if name
+]
+POLICIES = [(name, numbers) for name in ALL for numbers in NUMBERS]
+ROWS = 40
+
+READER = """
+static int read_{prefix}(FILE* file) {{
+    {prefix}_value_t inputs[{inputs}], outputs[{upper}_OUTPUT_COUNT];
+    {reset}
+    if (!{prefix}_self_test()) {{ return 1; }}
+    for (int row = 0; row < {rows}; row++) {{
+        if (fread(inputs, sizeof(inputs), 1, file) != 1) {{ return 2; }}
+        {prefix}_step({argument}inputs, outputs);
+        fwrite(outputs, sizeof(outputs), 1, stdout);
+    }}
+    return 0;
+}}
+"""
+
+
+def prefix_of(name: str, numbers: str) -> str:
+    return f"{name}_{numbers}"
+
+
+@pytest.fixture(scope="module")
+def headers(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with all policies, each with names of its own, as headers."""
+    folder = tmp_path_factory.mktemp("headers")
+    for name, numbers in POLICIES:
+        policy = Policy(random_network(ALL[name]), numbers=numbers)
+        prefix = prefix_of(name, numbers)
+        (folder / f"{prefix}.h").write_text(header_of(policy, vector_of(policy, None), prefix, "random.npz").text)
+    return folder
+
+
+def rows_for(numbers: str) -> npt.NDArray[np.generic]:
+    """Inputs in their range, and far beyond it."""
+    rows = observations(ROWS)
+    rows[3] = 10**6
+    rows[4] = -(10**6)
+    return rows.astype(np.float32 if numbers == "float" else np.int32)
+
+
+def expected(name: str, numbers: str) -> npt.NDArray[np.generic]:
+    policy = Policy(random_network(ALL[name]), numbers=numbers)
+    return np.array([policy.step(row) for row in rows_for(numbers)])
+
+
+@pytest.mark.parametrize(("name", "flags"), COMPILERS, ids=lambda part: part if isinstance(part, str) else part[0])
+def test_native_program_gives_the_same_bytes_as_python(
+    headers: Path, name: str, flags: list[str], tmp_path: Path
+) -> None:
+    """All headers in one program, without warnings, and without undefined behaviour as gcc's sanitizer finds it."""
+    text = ["#include <stdio.h>", *(f'#include "{prefix_of(*one)}.h"' for one in POLICIES)]
+    for one in POLICIES:
+        prefix = prefix_of(*one)
+        is_recurrent = one[0] in ("elman", "gated")
+        reset = f"{prefix}_state_t state; {prefix}_reset(&state);" if is_recurrent else ""
+        argument = "&state, " if is_recurrent else ""
+        text.append(
+            READER.format(prefix=prefix, upper=prefix.upper(), inputs=INPUTS, rows=ROWS, reset=reset, argument=argument)
+        )
+    calls = " || ".join(f"read_{prefix_of(*one)}(stdin)" for one in POLICIES)
+    text.append(f"int main(void) {{ return {calls}; }}\n")
+    (tmp_path / "main.c").write_text("\n".join(text))
+    subprocess.run([name, *flags, *STRICT, f"-I{headers}", "main.c", "-o", "main"], cwd=tmp_path, check=True)
+    given = b"".join(rows_for(numbers).tobytes() for _, numbers in POLICIES)
+    done = subprocess.run([tmp_path / "main"], input=given, capture_output=True, check=True, timeout=60)
+    assert done.stdout == b"".join(expected(*one).tobytes() for one in POLICIES)
+
+
+ROBOT = """#include "pogobase.h"
+#include <string.h>
+INCLUDES
+typedef struct { uint8_t tick; STATES } USERDATA;
+DECLARE_USERDATA(USERDATA)
+REGISTER_USERDATA(USERDATA)
+static int32_t const rows[ROW_COUNT][3] = {ROW_VALUES};
+void user_init(void) {}
+void user_step(void) {
+    if (mydata->tick >= ROW_COUNT) { return; }
+    int32_t const* row = rows[mydata->tick++];
+    CALLS
+}
+int main(void) { pogobot_init(); pogobot_start(user_init, user_step); return 0; }
+"""
+CALL = """{{
+        {prefix}_value_t inputs[3];
+        for (int i = 0; i < 3; i++) {{ inputs[i] = ({prefix}_value_t)row[i]; }}
+        {prefix}_value_t outputs[2];
+        uint32_t bits[2];
+        {prefix}_step({argument}inputs, outputs);
+        memcpy(bits, outputs, sizeof(bits));
+        printf("{prefix} %d %lu %lu\\n", {prefix}_self_test(), (unsigned long)bits[0], (unsigned long)bits[1]);
+    }}"""
+TICKS = 8
+
+
+def test_emulated_robot_gives_the_same_bits_as_python(headers: Path, tmp_path: Path) -> None:
+    rows = observations(TICKS)
+    states, calls = [], []
+    for one in POLICIES:
+        prefix = prefix_of(*one)
+        is_recurrent = one[0] in ("elman", "gated")
+        states.append(f"{prefix}_state_t {prefix};" if is_recurrent else "")  # USERDATA begin as zeros, as the state
+        calls.append(CALL.format(prefix=prefix, argument=f"&mydata->{prefix}, " if is_recurrent else ""))
+    text = (
+        ROBOT.replace("INCLUDES", "\n".join(f'#include "{prefix_of(*one)}.h"' for one in POLICIES))
+        .replace("STATES", " ".join(states))
+        .replace("ROW_VALUES", ", ".join("{" + ", ".join(map(str, row)) + "}" for row in rows))
+        .replace("ROW_COUNT", str(TICKS))
+        .replace("CALLS", "\n".join(calls))
+    )
+    source = tmp_path / "main.c"
+    source.write_text(text)
+    firmware = firmware_in(project_of(tmp_path / "project", source, *headers.glob("*.h")))
+    result = run_firmware(firmware, tmp_path, {"simulation_time": 0.5, "objects.robots.nb": 1})
+    assert result.code == 0, result.text
+    lines = [line.split("[PRINTF] ")[1].split() for line in result.robot_lines]
+    assert len(lines) == TICKS * len(POLICIES)
+    for place, (name, numbers) in enumerate(POLICIES):
+        policy = Policy(random_network(ALL[name]), numbers=numbers)
+        for tick, row in enumerate(rows):
+            prefix, is_right, *bits = lines[tick * len(POLICIES) + place]
+            assert (prefix, is_right) == (prefix_of(name, numbers), "1")
+            wanted = policy.step(row).astype(policy.dtype).view(np.uint32)
+            assert [int(one) for one in bits] == wanted.tolist(), (name, numbers, tick)
+
+
+@pytest.mark.parametrize("numbers", NUMBERS)
+def test_self_test_finds_a_changed_weight(numbers: str, tmp_path: Path) -> None:
+    policy = Policy(random_network(ALL["plain"]), numbers=numbers)
+    text = header_of(policy, vector_of(policy, None), "policy", "a").text
+    start = text.index("policy_bias_0[8] = {") + len("policy_bias_0[8] = {")
+    for content, code in ((text, 0), (f"{text[:start]}2000000+{text[start:].lstrip()}", 1)):
+        (tmp_path / "policy.h").write_text(content)
+        (tmp_path / "main.c").write_text('#include "policy.h"\nint main(void) { return !policy_self_test(); }\n')
+        subprocess.run(["cc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
+        assert subprocess.run([tmp_path / "main"], check=False).returncode == code
+
+
+def test_sizes_in_the_header_are_those_of_its_arrays(tmp_path: Path) -> None:
+    policy = Policy(random_network(ALL["gated"]), numbers="int8")
+    header = header_of(policy, vector_of(policy, None), "policy", "a")
+    assert header.state_bytes == 2 * (5 + 4)
+    assert f"#define POLICY_CONSTANT_BYTES {header.constant_bytes} " in header.text
+    (tmp_path / "policy.h").write_text(header.text)
+    (tmp_path / "main.c").write_text(
+        '#include "policy.h"\n_Static_assert(sizeof(policy_state_t) == POLICY_STATE_BYTES, "");\n'
+        "int main(void) { return policy_self_test(); }\n"
+    )
+    subprocess.run(["cc", "-c", "-O0", "main.c"], cwd=tmp_path, check=True)
+    listed = subprocess.run(["nm", "-S", "main.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    sizes = [int(line.split()[1], 16) for line in listed.splitlines() if line.split()[-2] == "r"]
+    assert sum(sizes) == header.constant_bytes
+
+
+@pytest.mark.parametrize("name", ["", "a b", "1a", "int", "a_", "x" * 64, "é"])
+def test_prefix_that_is_no_name_in_c_is_refused(name: str) -> None:
+    policy = Policy(random_network(ALL["plain"]))
+    with pytest.raises(PolicyError, match="expected a name as in C"):
+        header_of(policy, vector_of(policy, None), name, "a")
