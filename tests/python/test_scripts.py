@@ -13,7 +13,8 @@ BENCHMARKS = sorted(path for path in (ROOT / "bench").glob("*.py") if path.name 
 FIGURES = [ROOT / "docs" / "figures" / f"{name}.py" for name in ("all", "first_program", "tune", "validate")]
 SCRIPTS = [ROOT / "scripts" / f"{name}.py" for name in ("count_tests", "draw_arenas", "make_wheel")]
 TRAIN = ROOT / "examples" / "learning" / "train.py"
-ALL = [*BENCHMARKS, *FIGURES, *SCRIPTS, TRAIN]
+LEARN = ROOT / "examples" / "policy" / "learn.py"
+ALL = [*BENCHMARKS, *FIGURES, *SCRIPTS, TRAIN, LEARN]
 
 PACKAGES = "cma,gymnasium,matplotlib,numpy,pandas,pogosim,yaml"
 # Runs a script in a Python in which some packages are not installed.
@@ -74,7 +75,7 @@ def test_number_that_is_no_use_is_refused(script: str, arguments: list[str], tmp
     assert "Traceback" not in "\n".join(lines)
 
 
-@pytest.mark.parametrize("script", [*BENCHMARKS, *FIGURES, TRAIN], ids=lambda path: path.stem)
+@pytest.mark.parametrize("script", [*BENCHMARKS, *FIGURES, TRAIN, LEARN], ids=lambda path: path.stem)
 def test_missing_package_is_one_line_with_the_remedy(script: Path, tmp_path: Path) -> None:
     code, lines = ended("-c", WITHOUT, PACKAGES, script, folder=tmp_path)
     needs_none = script.stem in ("analyses", "films", "own_variables")
