@@ -24,6 +24,7 @@ try:
     import analysis_tour
     import blocked
     import compass
+    import exported_policy
     import extras
     import first_program
     import formations
@@ -66,6 +67,7 @@ SCRIPTS: dict[str, ModuleType] = {
         analysis_tour,
         blocked,
         compass,
+        exported_policy,
         extras,
         first_program,
         formations,

@@ -59,6 +59,7 @@ PAGES_WITH_COMMANDS = [
             "message_log",
             "optimization",
             "pictures",
+            "policy_export",
             "reports",
             "supervisor",
             "window",
