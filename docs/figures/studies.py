@@ -83,20 +83,17 @@ def validate(scene: str, folder: Path) -> dict[str, Picture | Quote]:
 
 def learn_a_little(_folder: Path) -> str:
     """Learn for two generations of short episodes."""
-    import train  # needs the extra 'learning'
+    import train
 
-    curves = []
-    for task in train.TASKS.values():
-        with train.Trainer(task, episode_steps=20) as trainer:
-            curves.append(pd.DataFrame(train.learn(trainer, generations=2, candidates=4).curve).add_prefix("test_"))
-    return fingerprint(*curves)
+    found = [train.learn(task, generations=2, candidates=4, end=4.0) for task in train.TASKS.values()]
+    return fingerprint(*(pd.DataFrame(learnt.curve).add_prefix("test_") for learnt in found))
 
 
 def learn(_folder: Path) -> dict[str, Picture | Quote]:
     """Learn as the page says."""
     import train
 
-    results = {name: train.learnt(name) for name in train.TASKS}
+    results = {name: train.learn(task, generations=20) for name, task in train.TASKS.items()}
     tables = [pd.DataFrame(learnt.curve).add_prefix("test_") for learnt in results.values()]
     gained = [learnt.curve[-1].mean() / learnt.by_hand.mean() for learnt in results.values()]
     caption = (

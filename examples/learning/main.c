@@ -4,7 +4,7 @@
 //
 // A robot makes a few numbers of what it senses, its observation: how bright it is, to which side it gets brighter, and
 // how many messages come from each side. A policy makes an action of them, the power of its two motors. While it is
-// learnt, that happens in Python, reading `observation` and writing `action` (gym_env.py, parallel_env.py, train.py);
+// learnt, that happens in Python, reading `observation` and writing `action` (environments.py, train.py);
 // docs/learning.md explains it. What has been learnt is a list of weights, with which the robots, real ones, too, do
 // without Python. The weights below steer towards light, like vehicle 2b of Braitenberg's "Vehicles", 1984.
 //

@@ -12,11 +12,8 @@ give the highest return. Equal seeds give equal results, whatever the number of 
 from __future__ import annotations
 
 import argparse
-import os
-import queue
 import sys
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,56 +22,45 @@ try:
     import cma
     import numpy as np
     import numpy.typing as npt
-    from commanded_robots import ACTIONS, OBSERVATIONS
-    from gym_env import LightSeeker
+    from environments import ACTIONS, OBSERVATIONS, gathering, light_seeker
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
-    from parallel_env import Gathering
+    from pogosim.learning import SwarmEnv
 except ImportError as missing:
     if __name__ != "__main__":
         raise
-    remedy = "; run it with .venv/bin/python, which ./build.sh makes" if missing.name else ""
-    print(f"train.py: {missing}{remedy}", file=sys.stderr)
+    print(f"train.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
     sys.exit(2)
 
 Array = npt.NDArray[Any]
-Policy = Callable[[Array], Array]  # observations, shape (robots, 7), to actions, shape (robots, 2)
+# Observations, shape (runs, robots, 7), to actions, shape (runs, robots, 2), in [-1, 1].
+Policy = Callable[[Array], Array]
 
 SHAPE = (len(ACTIONS), 1 + len(OBSERVATIONS))
 TEST_SEEDS = range(10_000, 10_010)  # episodes that no candidate is chosen by
 
 
 def linear(weights: Array) -> Policy:
-    """Return the policy with these weights, as the program has it."""
-    bias, slope = weights.reshape(SHAPE)[:, 0], weights.reshape(SHAPE)[:, 1:]
-    return lambda observations: np.clip(observations @ slope.T + bias, -1.0, 1.0)
+    """Return the policy with these weights, as the program has it. Shape (16,), or (runs, 16): one for each run."""
+    by_run = np.atleast_2d(weights).reshape(-1, *SHAPE)
+    bias, slope = by_run[:, None, :, 0], by_run[..., 1:]
+    return lambda observations: np.clip(observations @ slope.swapaxes(1, 2) + bias, -1.0, 1.0)
 
 
 def random_policy(seed: int) -> Policy:
     """Return the policy that does anything."""
     random = np.random.default_rng(seed)
-    return lambda observations: random.uniform(-1.0, 1.0, (len(observations), len(ACTIONS)))
+    return lambda observations: random.uniform(-1.0, 1.0, (*observations.shape[:2], len(ACTIONS)))
 
 
-def light_return(env: LightSeeker, policy: Policy, seed: int) -> float:
-    """Return the sum of rewards of an episode."""
-    observation, _ = env.reset(seed=seed)
-    total, is_over = 0.0, False
-    while not is_over:
-        observation, reward, _, is_over, _ = env.step(policy(observation[None])[0])
-        total += reward
-    return total
-
-
-def gathering_return(env: Gathering, policy: Policy, seed: int) -> float:
-    """Return the sum of rewards of an episode, mean over the robots, which all have this policy."""
-    observations, _ = env.reset(seed=seed)
-    total = 0.0
-    while env.agents:
-        actions = policy(np.stack([observations[agent] for agent in env.agents]))
-        observations, rewards, *_ = env.step(dict(zip(env.agents, actions, strict=True)))
-        total += float(np.mean(list(rewards.values())))
+def returns(env: SwarmEnv, policy: Policy, seeds: Sequence[int]) -> Array:
+    """Return the sums of rewards of an episode in each run, means over the robots. Shape (runs,)."""
+    observation, _ = env.reset(seed=seeds)
+    total = np.zeros(len(env))
+    for _ in range(env.episode_steps):
+        observation, reward, *_ = env.step(policy(observation))
+        total += reward.mean(axis=1)
     return total
 
 
@@ -85,15 +71,13 @@ class Task:
     Attributes:
         name: On the command line.
         title: In the figure.
-        make_env: Makes an environment, with episodes of so many steps or its own number.
-        episode: Return of an episode, by environment, policy and seed.
+        make_env: Makes an environment, with options of its own.
         by_hand: Weights that a person would choose.
     """
 
     name: str
     title: str
-    make_env: Callable[..., Any]
-    episode: Callable[[Any, Policy, int], float]
+    make_env: Callable[..., SwarmEnv]
     by_hand: tuple[float, ...]
 
 
@@ -101,59 +85,13 @@ TASKS = {
     task.name: task
     for task in (
         # Turn to the brighter side, see examples/learning/main.c.
-        Task(
-            "light",
-            "one robot looks for light",
-            LightSeeker,
-            light_return,
-            (0.5, 0, 0, 1, 0, 0, 0, 0, 0.5, 0, 0, -1, 0, 0, 0, 0),
-        ),
+        Task("light", "one robot looks for light", light_seeker, (0.5, 0, 0, 1, 0, 0, 0, 0, 0.5, 0, 0, -1, 0, 0, 0, 0)),
         # Turn to the side with more neighbours.
         Task(
-            "gathering",
-            "eight robots gather",
-            Gathering,
-            gathering_return,
-            (0.5, 0, 0, 0, 0, 1, 0.5, -1, 0.5, 0, 0, 0, 0, -1, -0.5, 1),
+            "gathering", "eight robots gather", gathering, (0.5, 0, 0, 0, 0, 1, 0.5, -1, 0.5, 0, 0, 0, 0, -1, -0.5, 1)
         ),
     )
 }
-
-
-class Trainer:
-    """Environments of a task, one for each thread."""
-
-    def __init__(self, task: Task, threads: int | None = None, **options: Any) -> None:
-        """Make the environments, with the options of theirs."""
-        count = threads or os.cpu_count() or 1
-        self.task = task
-        self._threads = ThreadPoolExecutor(count)
-        self._envs: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        for _ in range(count):
-            self._envs.put(task.make_env(**options))
-
-    def returns(self, episodes: Iterable[tuple[Policy, int]]) -> Array:
-        """Return what each episode, of a policy and a seed, gives."""
-        return np.array(list(self._threads.map(self._return_of, episodes)))
-
-    def _return_of(self, episode: tuple[Policy, int]) -> float:
-        env = self._envs.get()
-        try:
-            return self.task.episode(env, *episode)
-        finally:
-            self._envs.put(env)
-
-    def close(self) -> None:
-        """End all runs."""
-        self._threads.shutdown()
-        while not self._envs.empty():
-            self._envs.get().close()
-
-    def __enter__(self) -> Trainer:
-        return self
-
-    def __exit__(self, *of_error: object) -> None:
-        self.close()
 
 
 @dataclass(frozen=True)
@@ -173,32 +111,34 @@ class Learnt:
     by_chance: Array
 
 
-def learn(trainer: Trainer, generations: int, seed: int = 1, candidates: int = 12, episodes: int = 2) -> Learnt:
-    """Search the weights.
+def learn(
+    task: Task, generations: int, seed: int = 1, candidates: int = 12, episodes: int = 2, **options: Any
+) -> Learnt:
+    """Search the weights: one call of the policy for all episodes of all candidates.
 
     Args:
-        trainer: Environments.
+        task: What is learnt.
         generations: How often candidates are judged.
         seed: Seed of the search.
         candidates: Number of candidates in each generation.
         episodes: By whose mean return each is judged, the same for all of a generation.
+        **options: Of environments, such as `end` and `threads`.
     """
     size = SHAPE[0] * SHAPE[1]
     search = cma.CMAEvolutionStrategy(np.zeros(size), 0.5, {"seed": seed, "popsize": candidates, "verbose": -9})
-
-    def tested(policy: Policy) -> Array:
-        return trainer.returns((policy, test_seed) for test_seed in TEST_SEEDS)
-
-    curve = [tested(linear(search.mean))]
-    for generation in range(generations):
-        found = search.ask()
-        seeds = [episodes * generation + episode for episode in range(episodes)]
-        policies = [linear(weights) for weights in found]
-        returns = trainer.returns((policy, each) for policy in policies for each in seeds)
-        search.tell(found, list(-returns.reshape(candidates, episodes).mean(axis=1)))
-        curve.append(tested(linear(search.mean)))
-    by_chance = trainer.returns((random_policy(test_seed), test_seed) for test_seed in TEST_SEEDS)
-    by_hand = tested(linear(np.array(trainer.task.by_hand)))
+    with (
+        task.make_env(runs=candidates * episodes, **options) as env,
+        task.make_env(runs=len(TEST_SEEDS), **options) as test,
+    ):
+        curve = [returns(test, linear(search.mean), TEST_SEEDS)]
+        for generation in range(generations):
+            found = search.ask()
+            seeds = [episodes * generation + episode for episode in range(episodes)] * candidates
+            judged = returns(env, linear(np.repeat(found, episodes, axis=0)), seeds)
+            search.tell(found, list(-judged.reshape(candidates, episodes).mean(axis=1)))
+            curve.append(returns(test, linear(search.mean), TEST_SEEDS))
+        by_chance = returns(test, random_policy(TEST_SEEDS[0]), TEST_SEEDS)
+        by_hand = returns(test, linear(np.array(task.by_hand)), TEST_SEEDS)
     return Learnt(np.array(search.mean), np.array(curve), by_hand, by_chance)
 
 
@@ -227,12 +167,6 @@ def figure_of(results: dict[str, Learnt]) -> Figure:
     return figure
 
 
-def learnt(name: str, generations: int = 20, seed: int = 1) -> Learnt:
-    """Learn a task, on all processors."""
-    with Trainer(TASKS[name]) as trainer:
-        return learn(trainer, generations, seed)
-
-
 def summary(name: str, found: Learnt) -> list[str]:
     """Return lines with the returns of the test episodes, and the weights."""
     returns = {"random": found.by_chance, "by hand": found.by_hand, "learnt": found.curve[-1]}
@@ -256,7 +190,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--output: there is no folder {options.output.parent}")
     results = {}
     for name in options.tasks or TASKS:
-        results[name] = learnt(name, options.generations, options.seed)
+        results[name] = learn(TASKS[name], options.generations, options.seed)
         print(*summary(name, results[name]), sep="\n", flush=True)
     figure_of(results).savefig(options.output, dpi=110)
     return 0

@@ -6,7 +6,7 @@ import os
 import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from ctypes import byref, c_void_p
+from ctypes import byref, c_void_p, string_at
 from threading import Lock
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import SimulationError
-from pogosim.simulation.library import OK, OVER, Exchange, Turn, check, error_of_step, library
+from pogosim.simulation.library import OK, OVER, ArrayPlace, Exchange, Turn, check, error_of_step, library
 from pogosim.simulation.run import SLICE_S
 
 IN_USE = "a simulation is in use by another thread: give each thread one of its own"
@@ -92,6 +92,34 @@ class ManyRuns:
             pointers, place, count = (c_void_p * 1)(self.pointers[run]), place + run * size, 1
         check(library().pogosim_runs_read(pointers, count, of_category, name.encode(), place, size))
 
+    def read_rows(self, category: str, name: str, kind: np.dtype[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+        """Copy an array of a brain that has more rows in some runs than in others.
+
+        Args:
+            category: That of the brain.
+            name: Its name in the library.
+            kind: Of a row, which has no gaps.
+
+        Returns:
+            The rows of all runs, one after the other; and how many each run has. Shape (runs,).
+        """
+        find, place = library().pogosim_run_brain_array, ArrayPlace()
+        of_category, of_name = category.encode(), name.encode()
+        counts, parts = [], []
+        for pointer in self.pointers:
+            check(find(pointer, of_category, of_name, byref(place)))
+            rows = place.shape[0]
+            counts.append(rows)
+            if rows:
+                parts.append(string_at(place.data, rows * kind.itemsize))
+        return np.frombuffer(b"".join(parts), kind), np.array(counts, dtype=np.int64)
+
+    def clear_received(self, category: str) -> None:
+        """Forget the messages that the robots of a category have received in all runs."""
+        clear, of_category = library().pogosim_run_clear_received, category.encode()
+        for pointer in self.pointers:
+            check(clear(pointer, of_category))
+
 
 def bytes_each(array: npt.NDArray[Any]) -> int:
     """Return the size of the part of one run. Shape (runs, ...), without gaps."""
@@ -99,17 +127,17 @@ def bytes_each(array: npt.NDArray[Any]) -> int:
 
 
 @contextmanager
-def all_held(locks: Sequence[Lock]) -> Iterator[None]:
-    """Hold the locks of simulations meanwhile.
+def all_held(locks: Sequence[tuple[Lock, bool]]) -> Iterator[None]:
+    """Hold the locks of simulations meanwhile, each with whether to wait for it: a view goes on with the run.
 
     Raises:
         SimulationError: Another thread has one of them.
     """
     held: list[Lock] = []
     try:
-        for lock in locks:
+        for lock, waits in locks:
             held.append(lock)  # before it is: Ctrl-C may come in between
-            if not lock.acquire(False):  # by name, the argument takes as long as the rest
+            if not lock.acquire(waits):  # by name, the argument takes as long as the rest
                 held.pop()
                 raise SimulationError(IN_USE)
         yield

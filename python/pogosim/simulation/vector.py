@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
 from contextvars import ContextVar, copy_context
@@ -19,7 +19,7 @@ from pogosim.firmware import is_firmware
 from pogosim.outputs import PathLike
 from pogosim.simulation.arrays import RunState, check_process, chosen_rows
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
-from pogosim.simulation.library import OK
+from pogosim.simulation.library import OK, OVER
 from pogosim.simulation.many_runs import ManyRuns, RunThreads, all_held
 from pogosim.simulation.objects import chosen_index
 from pogosim.simulation.run import CLOSED, MOST_STEPS, Simulation, checked_seed
@@ -179,13 +179,18 @@ class VectorSimulation:
             for simulation in self.simulations:
                 simulation._current.should_pause = False
 
-    def step(self, steps: int = 1) -> list[int]:
+    def step(self, steps: int = 1, which: npt.ArrayLike | None = None) -> list[int]:
         """Go on with all of them, see `Simulation.step`: one call of the library for all. Returns the steps of each.
 
         If some runs fail, the others go on, and the first of the errors comes when all are ready. After Ctrl-C, runs
         stop between two time steps.
+
+        Args:
+            steps: How many.
+            which: The runs that go on, as of `reset`; None: all.
         """
-        steps = given.integer("steps", steps, least=0)
+        steps = min(given.integer("steps", steps, least=0), MOST_STEPS)
+        waiting = None if which is None else np.setdiff1d(np.arange(len(self)), self._chosen(which))
         check_process(self._process)
         self._check_outside("each, step, reset, save and restore")
         runs = self._runs()
@@ -193,7 +198,9 @@ class VectorSimulation:
         with self._all_held():
             exchanges = [array for brain in self._brains.values() for array in brain._exchanges(runs)]
             turns = runs.turns
-            turns["left"], turns["status"] = min(steps, MOST_STEPS), OK
+            turns["left"], turns["status"] = steps, OK
+            if waiting is not None:
+                turns["status"][waiting] = OVER
             is_first = True
             while is_first or ((turns["left"] > 0) & (turns["status"] == OK)).any():
                 is_first = False
@@ -207,11 +214,13 @@ class VectorSimulation:
         if failed:
             run = min(failed)
             raise type(failed[run])(f"run {run}: {failed[run]}")
-        return [min(steps, MOST_STEPS) - left for left in turns["left"].tolist()]
+        if waiting is not None:
+            turns["left"][waiting] = steps
+        return [steps - left for left in turns["left"].tolist()]
 
     def _all_held(self) -> AbstractContextManager[None]:
         """Hold the locks of all simulations in a `with` block, see `all_held`."""
-        return all_held([simulation._lock for simulation in self.simulations])
+        return all_held([(simulation._lock, simulation._current.is_shared) for simulation in self.simulations])
 
     def _runs(self) -> ManyRuns:
         """Return the present runs; after a reset of one, there are others."""
@@ -241,7 +250,12 @@ class VectorSimulation:
             self._brains[name] = VectorBrain(self._runs, name, *sizes)
         return self._brains[name]
 
-    def reset(self, seeds: Sequence[int] | range | None = None, which: npt.ArrayLike | None = None) -> None:
+    def reset(
+        self,
+        seeds: Sequence[int] | range | None = None,
+        which: npt.ArrayLike | None = None,
+        set: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,  # noqa: A002 -- as of Simulation.reset
+    ) -> None:
         """Begin some of them again, or all.
 
             runs.reset(which=runs.is_over)
@@ -249,17 +263,25 @@ class VectorSimulation:
         Args:
             seeds: One for each run that begins again; None: their own.
             which: An index, an array of indices, or an array of booleans, one for each run; None: all.
+            set: As of `Simulation.reset`, the same for all runs that begin again, or a list with one for each.
 
         Raises:
-            ConfigurationError: There are more or fewer seeds than runs, no run of an index, or one is there twice.
+            ConfigurationError: There are more or fewer seeds or maps than runs, no run of an index, or one is there
+                twice.
         """
         self._check_open()
         chosen = self._chosen(which)
+        maps: list[Any] = list(set) if isinstance(set, list | tuple) else [set] * len(chosen)
+        if len(maps) != len(chosen):
+            raise ConfigurationError(f"set: expected {len(chosen)} maps, one for each run, found {len(maps)}")
         new_seeds = [None] * len(chosen) if seeds is None else checked_seeds(seeds)
         if len(new_seeds) != len(chosen):
             raise ConfigurationError(f"seeds: expected {len(chosen)}, one for each run, found {len(new_seeds)}")
-        seed_of = {id(self.simulations[run]): seed for run, seed in zip(chosen, new_seeds, strict=True)}
-        self._each(lambda simulation: simulation.reset(seed_of[id(simulation)]), chosen)
+        begin = {
+            id(self.simulations[run]): (seed, settings)
+            for run, seed, settings in zip(chosen, new_seeds, maps, strict=True)
+        }
+        self._each(lambda simulation: simulation.reset(*begin[id(simulation)]), chosen)
 
     def save(self, which: npt.ArrayLike | None = None) -> list[SavedState]:
         """Copy the states of some of them, or of all, see `Simulation.save`. `which`: as of `reset`. In their order.

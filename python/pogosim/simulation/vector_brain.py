@@ -12,7 +12,7 @@ from pogosim.arguments import shown
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.brain import RECEIVED, BrainArrays
 from pogosim.simulation.errors import ConfigurationError
-from pogosim.simulation.library import Exchange, check, library
+from pogosim.simulation.library import Exchange
 from pogosim.simulation.many_runs import ManyRuns, bytes_each
 
 # Shape of a robot's row and type, by name, as of pogosim_run_brain_array().
@@ -108,6 +108,16 @@ class VectorBrain(BrainArrays):
                 f"{self._robots}: reset it with as many, or make another VectorSimulation"
             )
 
+    def _check_sizes(self, runs: ManyRuns) -> None:
+        """Check that all runs have as many robots, if one has begun anew since the arrays were made.
+
+        Raises:
+            ConfigurationError: One has not.
+        """
+        if self._seen != moments_of(runs):
+            for index in range(len(runs.states)):
+                self._check_size(runs, index)
+
     def _note_step(self, runs: ManyRuns) -> None:
         """Remember that the arrays show what the runs have measured."""
         self._seen = moments_of(runs)
@@ -118,9 +128,7 @@ class VectorBrain(BrainArrays):
         Raises:
             ConfigurationError: A run has another number of robots than the others.
         """
-        if self._seen != moments_of(runs):
-            for index in range(len(runs.states)):
-                self._check_size(runs, index)
+        self._check_sizes(runs)
         category = self._category.encode()
         return [
             Exchange(
@@ -141,41 +149,36 @@ class VectorBrain(BrainArrays):
         Its fields are run, robot (row), sender (id), face, and length and offset in `received_bytes`. Shape
         (messages,); a copy, as of the end of the last step of each run.
         """
-        runs = self._runs()
-        found, begin = [], 0
-        for run in self._with_messages(runs):
-            table = np.ascontiguousarray(runs.states[run].brain_array(self._category, "received", stays=False))
-            messages = np.empty(len(table), RECEIVED_IN_RUNS)
-            messages["run"] = run
-            for column, name in enumerate(RECEIVED.names or ()):
-                messages[name] = table[:, column]
-            messages["offset"] += begin
-            begin += len(runs.states[run].brain_array(self._category, "received_bytes", stays=False))
-            found.append(messages)
-        return np.concatenate(found) if found else np.zeros(0, RECEIVED_IN_RUNS)
+        runs = self._present_runs()
+        table, counts = runs.read_rows(self._category, "received", RECEIVED)
+        messages = np.empty(len(table), RECEIVED_IN_RUNS)
+        messages["run"] = np.repeat(np.arange(len(counts)), counts)
+        for name in RECEIVED.names or ():
+            messages[name] = table[name]
+        # The payloads of a run stand behind those of the runs before it.
+        bytes_until = np.concatenate(([0], np.cumsum(messages["length"], dtype=np.int64)))
+        messages["offset"] += np.repeat(bytes_until[np.cumsum(counts) - counts], counts).astype(np.int32)
+        return messages
 
     @property
     def received_bytes(self) -> npt.NDArray[np.uint8]:
         """The payloads of all these messages, one after the other. A copy: take it once for many messages."""
-        runs = self._runs()
-        found = [
-            runs.states[run].brain_array(self._category, "received_bytes", stays=False)
-            for run in self._with_messages(runs)
-        ]
-        return np.concatenate(found) if found else np.zeros(0, np.uint8)
+        return self._present_runs().read_rows(self._category, "received_bytes", np.dtype(np.uint8))[0]
 
-    def _with_messages(self, runs: ManyRuns) -> list[int]:
-        """Return the runs that have received messages: one call of the library for all, since most have none."""
-        for run in range(len(runs.states)):
-            self._check_size(runs, run)
-        counts = np.zeros((len(runs.states), self._robots), dtype=np.uint32)
-        runs.read("received_count", counts, self._category)
-        return np.flatnonzero(counts.any(axis=1)).tolist()
+    def _present_runs(self) -> ManyRuns:
+        """Return the runs, all of which have as many robots.
+
+        Raises:
+            ConfigurationError: One has not.
+        """
+        runs = self._runs()
+        self._check_sizes(runs)
+        return runs
 
     def clear_received(self) -> None:
         """Forget the messages that all runs have received, see `Brain.clear_received`."""
         runs = self._runs()
-        for state in runs.states:
-            check(library().pogosim_run_clear_received(state.pointer, self._category.encode()))
-        for index in range(len(runs.states)):
-            self._take(runs, index)
+        self._follow(runs)
+        runs.clear_received(self._category)
+        if "received_count" in self._arrays:
+            self._arrays["received_count"][...] = 0

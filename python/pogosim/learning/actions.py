@@ -1,0 +1,157 @@
+"""What a policy makes robots do: motors, LEDs and messages of a host's brain, user data and parameters of a program."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.arguments import shown
+from pogosim.firmware import is_firmware
+from pogosim.learning.quantities import Scaling, check_finite, resolved
+from pogosim.learning.swarm_arrays import MOST_BYTES, PAYLOAD, USER_DATA, SwarmArrays, Value, field
+from pogosim.nearest_name import advice
+from pogosim.simulation import ConfigurationError
+
+Array = npt.NDArray[np.float32]
+Write = Callable[[Array], None]  # values in their own units, shape (runs, robots, numbers)
+
+PARAMETER = "parameters."
+FULL = 1023  # power of a motor
+# What a host writes: the array of its brain, and which of its numbers.
+OF_HOST: Mapping[str, tuple[str, Any, Value]] = {
+    "motors": ("motors", np.s_[..., :2], Value(2, -FULL, FULL)),
+    "back_motor": ("motors", np.s_[..., 2:], Value(1, -FULL, FULL)),
+    "led": ("leds", np.s_[..., 0, :], Value(3, 0, 255)),
+    "leds": ("leds", np.s_[..., :], Value(15, 0, 255)),
+}
+
+
+def known_actions(swarm: SwarmArrays) -> dict[str, Value]:
+    """Return what robots can be made to do, by name, except messages and parameters."""
+    if swarm.is_hosted:
+        return {name: value for name, (_, _, value) in OF_HOST.items()}
+    program = swarm.runs[0].program
+    if program is not None and is_firmware(program):
+        return {}  # its memory is read only
+    return {name: value for name, value in swarm.known.items() if name.startswith(USER_DATA)}
+
+
+def find_action(swarm: SwarmArrays, name: str) -> Value:
+    """Return what is known of an action.
+
+    Raises:
+        ConfigurationError: There is none of this name, or it is one of a host and a program drives the robots.
+    """
+    known = known_actions(swarm)
+    if name in known:
+        return known[name]
+    if name.startswith(PARAMETER) and name != PARAMETER:
+        return Value(1)
+    payload = PAYLOAD.fullmatch(name)
+    if not swarm.is_hosted and (name in OF_HOST or payload):
+        raise ConfigurationError(
+            f"actions: {shown(name)} is written by a host, and a program drives the robots of category "
+            f"{shown(swarm.category)}: pass None in place of the program, or name a member of its user data"
+            f"{advice(name, known) if known else ''}"
+        )
+    if payload:
+        if not 1 <= int(payload[1]) <= MOST_BYTES:
+            raise ConfigurationError(f"actions: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
+        return Value(int(payload[1]), 0, 255)
+    others = ["message(4)"] if swarm.is_hosted else []
+    raise ConfigurationError(f"actions: there is no action {shown(name)}{advice(name, [*known, *others])}")
+
+
+class Actions:
+    """Writes what a policy gives where robots find it.
+
+    Attributes:
+        scaling: Its numbers, and their ranges.
+    """
+
+    def __init__(self, swarm: SwarmArrays, actions: Any) -> None:
+        """Look up where it goes.
+
+        Raises:
+            ConfigurationError: A name or a range is wrong.
+        """
+        self._swarm = swarm
+        self.scaling = Scaling(resolved("actions", actions, lambda name: find_action(swarm, name)))
+        self._own = np.zeros((len(swarm.runs), swarm.robots, len(self.scaling)), np.float32)
+        self._views: dict[str, list[npt.NDArray[Any]]] = {}  # of user data, by member
+        self._writes: list[tuple[Write, slice]] = [
+            (self._write_of(quantity.name), part) for quantity, part in self.scaling.parts()
+        ]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Runs, robots, numbers."""
+        runs, robots, numbers = self._own.shape
+        return runs, robots, numbers
+
+    def checked(self, actions: npt.ArrayLike) -> npt.NDArray[Any]:
+        """Return actions as an array.
+
+        Raises:
+            ConfigurationError: They are not finite numbers of the shape (runs, robots, numbers).
+        """
+        try:
+            found = np.asarray(actions)
+        except (TypeError, ValueError):  # lists of different lengths
+            found = np.empty(0, dtype=object)
+        if found.dtype.kind not in "biuf":
+            raise ConfigurationError(f"actions: expected numbers of shape {self.shape}, found {shown(actions)}")
+        if found.shape != self.shape:
+            names = ", ".join(self.scaling.features)
+            raise ConfigurationError(
+                f"actions: expected the shape {self.shape}: runs, robots, numbers ({names}); found {found.shape}"
+            )
+        check_finite("actions", found, self.scaling.features)
+        return found
+
+    def write(self, actions: npt.NDArray[Any]) -> None:
+        """Let robots do what `checked` has returned, from their next tick on."""
+        self.scaling.from_policy(actions, self._own)
+        for write, part in self._writes:
+            write(self._own[..., part])
+
+    def forget(self) -> None:
+        """Ask for the memory of robots anew: some runs have begun again."""
+        self._views.clear()
+
+    def _write_of(self, name: str) -> Write:
+        if name.startswith(PARAMETER):
+            return lambda values: self._set_parameter(name.removeprefix(PARAMETER), values)
+        if name.startswith(USER_DATA):
+            return lambda values: self._write_user_data(name.removeprefix(USER_DATA), values)
+        if name in OF_HOST:
+            array, part, _ = OF_HOST[name]
+            return lambda values: self._write_brain(array, part, values)
+        return self._send
+
+    def _write_brain(self, name: str, part: Any, values: Array) -> None:
+        array = getattr(self._swarm.brain, name)[part]
+        array[...] = np.rint(values).reshape(array.shape)
+
+    def _send(self, values: Array) -> None:
+        brain = self._swarm.brain
+        brain.send_bytes[..., : values.shape[-1]] = np.rint(values)
+        brain.send_face[...] = -1
+        brain.send_length[...] = values.shape[-1]
+
+    def _write_user_data(self, member: str, values: Array) -> None:
+        if member not in self._views:
+            self._views[member] = [field(simulation.user_data, member) for simulation in self._swarm.runs]
+        for view, of_run in zip(self._views[member], values, strict=True):
+            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else np.rint(of_run)).reshape(
+                -1, *view.shape[1:]
+            )
+
+    def _set_parameter(self, name: str, values: Array) -> None:
+        """All robots of a run share a parameter: it gets the mean of what they ask for."""
+        for simulation, of_run in zip(self._swarm.runs, values, strict=True):
+            simulation.parameters[name] = float(math.fsum(of_run.flat) / of_run.size)

@@ -1,0 +1,114 @@
+"""What a file of a policy says of the environment that it is for.
+
+A policy is arrays in an .npz file of NumPy: its weights, as it likes, and these, which say what its numbers are:
+
+    input_names, output_names    texts: names as in C, such as photosensors_0
+    input_offset, input_scale    (inputs,): what the policy sees is (input - input_offset) * input_scale
+    output_scale, output_offset  (outputs,): output = what the policy gives * output_scale + output_offset
+    input_low, input_high        (inputs,): the ranges of inputs
+"""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pogosim.learning.quantities import Scaling
+from pogosim.simulation.errors import ConfigurationError, given
+
+Arrays = dict[str, npt.NDArray[Any]]
+
+NAMES = {"input": "observation", "output": "actions"}  # the argument of an environment that they are from
+NUMBERS = ("input_offset", "input_scale", "output_offset", "output_scale")
+
+
+def name_in_c(feature: str) -> str:
+    """Return the name of a number as C has it: "photosensors_0" of "photosensors[0]"."""
+    return re.sub(r"\W+", "_", feature).strip("_")
+
+
+def policy_arrays(observation: Scaling, actions: Scaling) -> Arrays:
+    """Return the arrays that say what the numbers of a policy are."""
+    input_offset, input_scale = observation.offset_and_scale()
+    output_offset, output_scale = actions.offset_and_scale()
+    return {
+        "input_names": np.array([name_in_c(name) for name in observation.features]),
+        "output_names": np.array([name_in_c(name) for name in actions.features]),
+        "input_offset": input_offset,
+        "input_scale": input_scale,
+        "input_low": observation.own_low,
+        "input_high": observation.own_high,
+        "output_offset": output_offset,
+        "output_scale": np.float32(1) / output_scale,
+    }
+
+
+def read_policy(policy: Any) -> tuple[str, Mapping[str, Any]]:
+    """Return what messages call a policy, and its arrays.
+
+    Args:
+        policy: The path of an .npz file, or arrays by their names.
+
+    Raises:
+        ConfigurationError: It is neither, or the file cannot be read.
+    """
+    if isinstance(policy, Mapping):
+        return "policy", policy
+    file = given.path("policy", policy)
+    try:
+        with np.load(file, allow_pickle=False) as found:
+            if isinstance(found, np.ndarray):
+                raise ValueError("one array alone")
+            return str(file), {name: found[name] for name in found.files}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, AttributeError, TypeError) as error:
+        said = str(error).partition("\n")[0]
+        raise ConfigurationError(f"{file} cannot be read as an .npz file of NumPy: {said}") from None
+
+
+def check_names(what: str, kind: str, found: Sequence[str], expected: Sequence[str]) -> None:
+    """Check that a policy has the inputs or outputs of an environment.
+
+    Raises:
+        ConfigurationError: It has others; names the first that differs.
+    """
+    begin = f"{what} is for other {NAMES[kind]}" if kind == "output" else f"{what} is for another {NAMES[kind]}"
+    if len(found) != len(expected):
+        raise ConfigurationError(
+            f"{begin}: it has {len(found)} {kind}s ({', '.join(found)}), and the environment has {len(expected)} "
+            f"({', '.join(expected)})"
+        )
+    for index, (own, other) in enumerate(zip(found, expected, strict=True)):
+        if own != other:
+            raise ConfigurationError(f"{begin}: its {kind} {index} is {own!r}, and that of the environment {other!r}")
+
+
+def check_policy(policy: Any, arrays: Arrays) -> Mapping[str, Any]:
+    """Check that a policy is for an environment, and return its arrays.
+
+    Args:
+        policy: The path of an .npz file, or arrays by their names.
+        arrays: What `policy_arrays` says of the environment.
+
+    Raises:
+        ConfigurationError: Its inputs or outputs are others, or scaled in another way; or it does not say what they
+            are.
+    """
+    what, found = read_policy(policy)
+    for kind in NAMES:
+        name = f"{kind}_names"
+        if name not in found:
+            raise ConfigurationError(f"{what} has no array {name}: save it with **env.policy_arrays()")
+        own = [str(one) for one in np.atleast_1d(found[name])]
+        check_names(what, kind, own, arrays[name].tolist())
+    for name in NUMBERS:
+        if name in found and not np.allclose(found[name], arrays[name], rtol=1e-5, atol=1e-6):
+            raise ConfigurationError(
+                f"{what} is for other ranges: its {name} is {np.round(found[name], 6).tolist()}, and that of the "
+                f"environment {np.round(arrays[name], 6).tolist()}"
+            )
+    return found
