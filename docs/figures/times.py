@@ -136,7 +136,7 @@ TIMES = {
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
     "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
     "first_start": Times("../README.md: first_start", first_start),
-    "environments": Times("learning.md: environments", printed(PYTHON, "bench/environments.py")),
+    "environments": Times("learning.md: environments", printed(PYTHON, "bench/learning.py")),
     "large": Times("../bench/README.md: large", printed(f"{BENCH}large")),
     "light": Times("../bench/README.md: light", printed(f"{BENCH}light")),
     "machine": Times("performance.md: machine", printed(f"{BENCH}machine")),

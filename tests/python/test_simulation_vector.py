@@ -326,3 +326,39 @@ def test_runs_that_are_over_are_told_apart(tmp_path: Path) -> None:
         runs[3].close()
         assert runs.is_over.tolist() == [False, True, False, True]
     assert runs.is_over.tolist() == [True] * 4
+
+
+def test_some_runs_go_on_and_the_others_wait(tmp_path: Path) -> None:
+    with many(tmp_path) as runs:
+        brain = runs.brain("robots")
+        brain.motors[..., :2] = 1023
+        assert (brain.photosensors == -1).all()
+        assert runs.step(30, which=[0, 2]) == [30, 0, 30, 0]
+        assert [sim.steps for sim in runs] == [30, 0, 30, 0]
+        assert brain.photosensors[:, 0, 0].tolist() == [0, -1, 0, -1]  # before the first tick, there is none
+        assert runs.step(5, which=np.array([False, True, False, False])) == [0, 5, 0, 0]
+        assert runs.step(1) == [1] * 4
+        assert runs.step(3, which=[]) == [0] * 4
+        with pytest.raises(pogosim.ConfigurationError, match="which: there is no run 4: the simulation has 4"):
+            runs.step(which=[4])
+        hashes = [sim.state_hash for sim in runs]
+    for run, steps in ((0, 31), (1, 6), (3, 1)):
+        with pogosim.Simulation(None, write_scene(tmp_path, SCENE), seed=run) as sim:
+            sim.brain("robots").motors[:, :2] = 1023
+            sim.step(steps)
+            assert sim.state_hash == hashes[run]
+
+
+def test_runs_begin_again_with_keys_of_their_own(tmp_path: Path) -> None:
+    key = "objects.robots.linear_noise_stddev"
+    with many(tmp_path) as runs:
+        runs.reset(seeds=[5, 5, 5], which=[0, 1, 3], set=[{key: 0.1}, {key: 0.2}, {key: 0.1}])
+        runs.brain("robots").motors[...] = 1023
+        runs.step(50)
+        hashes = [sim.state_hash for sim in runs]
+        assert hashes[0] == hashes[3] != hashes[1]
+        runs.reset(seeds=[5] * 4, set={key: 0.2})
+        runs.step(50)
+        assert [sim.state_hash for sim in runs] == [hashes[1]] * 4
+        with pytest.raises(pogosim.ConfigurationError, match="set: expected 4 maps, one for each run, found 2"):
+            runs.reset(set=[{}, {}])

@@ -23,14 +23,14 @@ class HumanView:
             ImportError: The package websockets is missing, or in a notebook anywidget.
         """
         self._page: LivePage | None = None
-        self._next_s = time.monotonic()
         if is_in_notebook():
             simulation.view()._ipython_display_()
-            return
-        from pogosim.watch.serving import LivePage
+        else:
+            from pogosim.watch.serving import LivePage
 
-        self._page = LivePage(simulation)
-        webbrowser.open(self._page.address)
+            self._page = LivePage(simulation)
+            webbrowser.open(self._page.address)
+        self._next_s = time.monotonic()
 
     def wait(self, duration_s: float) -> None:
         """Wait until so much time has passed since the last call, so that the run goes on in real time."""

@@ -1,0 +1,154 @@
+"""How many robot-steps an environment for learning makes per second, with a policy in NumPy, beside VMAS.
+
+    .venv/bin/python bench/learning.py [--runs 256] [--robots 20] [--steps 100] [--vmas PYTHON]
+
+A `SwarmEnv` of many runs: a policy multiplies what the robots see (three light sensors; with communication also the
+messages that they heard) with a matrix, and gives them powers of motors, and a message of 4 bytes to send at every
+decision. The robots, on 10^4 mm2 each, have bodies; time steps are of 16 ms. VMAS (Bettini et al., "VMAS: A Vectorized
+Multi-Agent Simulator for Collective Robot Learning", DARS 2022) does the same with its scenario `flocking`, whose steps
+are of 0.1 s, if PYTHON, the program, has the package `vmas`, which is not one of those that Pogosim needs.
+
+Times are processor time, with one thread each, so that other work on the machine counts less; the rows take turns, and
+the best of ROUNDS counts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+try:
+    import numpy as np
+    from pogosim.learning import SwarmEnv
+except ImportError as missing:
+    if __name__ != "__main__":
+        raise
+    print(f"learning.py: {missing}; run it with .venv/bin/python, which ./build.sh makes", file=sys.stderr)
+    sys.exit(2)
+
+from options import at_least_one
+
+STEP_S = 0.016
+AREA_PER_ROBOT_MM2 = 1e4
+ROUNDS = 3
+
+VMAS = """
+import sys, time
+import torch, vmas
+torch.set_num_threads(1)
+runs, robots, steps = map(int, sys.argv[1:])
+env = vmas.make_env("flocking", num_envs=runs, device="cpu", continuous_actions=True, seed=1, n_agents=robots)
+seen = env.reset()
+matrix = torch.rand(seen[0].shape[1], env.get_agent_action_size(env.agents[0])) - 0.5
+with torch.no_grad():
+    for _ in range(2):
+        seen = env.step([torch.tanh(own @ matrix) for own in seen])[0]
+    start_s = time.process_time()
+    for _ in range(steps):
+        seen = env.step([torch.tanh(own @ matrix) for own in seen])[0]
+print(time.process_time() - start_s, env.world.dt)
+"""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table.
+
+    Attributes:
+        name: What is measured.
+        decision_s: Simulated time of a step.
+        measure: Makes steps of all runs, and returns the processor time, s.
+    """
+
+    name: str
+    decision_s: float
+    measure: Callable[[], float]
+
+
+def scene(robots: int) -> dict[str, Any]:
+    """Return the configuration of a run: robots under a lamp."""
+    return {
+        "arena_file": "arenas/square.csv",
+        "arena_surface": robots * AREA_PER_ROBOT_MM2,
+        "time_step": STEP_S,
+        "initial_formation": "random",
+        "objects": {
+            "lamp": {"type": "static_light", "geometry": "disk", "radius": 1e4, "x": 0, "y": 0, "value": 500},
+            "robots": {"type": "pogobot", "nb": robots},
+        },
+    }
+
+
+def seconds_of(env: SwarmEnv, steps: int) -> float:
+    """Measure steps of an environment with its policy."""
+    matrix = np.random.default_rng(1).uniform(-0.5, 0.5, (len(env.inputs), len(env.outputs))).astype(np.float32)
+    observation, _ = env.reset(seed=1)
+    for step in range(2 + steps):
+        if step == 2:
+            start_s = time.process_time()
+        observation, *_ = env.step(np.tanh(1.0 + observation @ matrix))
+    return float(time.process_time() - start_s)
+
+
+def row(name: str, ticks: int, talks: bool, options: argparse.Namespace) -> Row:
+    """Return a row of ours; `ticks`: from one decision to the next."""
+    env = SwarmEnv(
+        None,
+        scene(options.robots),
+        observation=[("photosensors", 0, 1000), *(["messages", "message(4)"] if talks else [])],
+        actions=["motors", *(["message(4)"] if talks else [])],
+        reward="photosensors[0] / 500",
+        end=1e6,
+        runs=options.runs,
+        decision_s=ticks * STEP_S,
+        threads=1,
+    )
+    return Row(name, ticks * STEP_S, lambda: seconds_of(env, options.steps))
+
+
+def vmas_row(options: argparse.Namespace) -> Row:
+    """Return the row of VMAS, in a process of the Python that has it."""
+    steps = max(1, options.steps // 4)
+    command = [options.vmas, "-c", VMAS, *map(str, (options.runs, options.robots, steps))]
+
+    def measure() -> float:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            said = done.stderr.strip().rpartition("\n")[2]
+            sys.exit(f"learning.py: --vmas: {options.vmas} cannot run VMAS: {said}")
+        seconds, decision_s = map(float, done.stdout.split())
+        assert np.isclose(decision_s, 0.1), "the length of a step of VMAS"
+        return seconds * options.steps / steps
+
+    return Row("VMAS flocking", 0.1, measure)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--runs", type=at_least_one, default=256, help="runs at once, default %(default)s")
+    parser.add_argument("--robots", type=at_least_one, default=20, help="robots of each run, default %(default)s")
+    parser.add_argument("--steps", type=at_least_one, default=100, help="steps of each measurement")
+    parser.add_argument("--vmas", metavar="PYTHON", help="a Python that has the package vmas, to measure beside")
+    options = parser.parse_args()
+    rows = [
+        row("a decision each tick", 1, False, options),
+        row("the same with messages", 1, True, options),
+        row("a decision each 6 ticks", 6, False, options),
+        row("the same with messages", 6, True, options),
+        *([vmas_row(options)] if options.vmas else []),
+    ]
+    best = np.min([[one.measure() for one in rows] for _ in range(ROUNDS)], axis=0)
+    print(f"{options.runs} runs of {options.robots} robots   step, s  million robot-steps per s  robot-hours per s")
+    for one, seconds in zip(rows, best.tolist(), strict=True):
+        per_s = options.runs * options.robots * options.steps / seconds
+        print(f"{one.name:23}  {one.decision_s:<7.3g}  {per_s / 1e6:<25.2f}  {per_s * one.decision_s / 3600:.1f}")
+
+
+if __name__ == "__main__":
+    main()
