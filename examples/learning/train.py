@@ -122,7 +122,7 @@ def learn(
         seed: Seed of the search.
         candidates: Number of candidates in each generation.
         episodes: By whose mean return each is judged, the same for all of a generation.
-        **options: Of environments, such as `end` and `threads`.
+        **options: Those of environments, such as `end` and `threads`.
     """
     size = SHAPE[0] * SHAPE[1]
     search = cma.CMAEvolutionStrategy(np.zeros(size), 0.5, {"seed": seed, "popsize": candidates, "verbose": -9})

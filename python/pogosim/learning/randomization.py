@@ -125,7 +125,7 @@ class Randomization:
             raise given.refused("randomize", "a map from keys of the configuration to what is drawn", randomize)
         self._draws: dict[str, Draw] = {}
         for key, values in (randomize or {}).items():
-            name = given.text("a key of randomize", key)
+            name = given.text("randomize: a key", key)
             self._draws[name] = draw_of(f"randomize: {name}", values)
         self.keys = tuple(self._draws)
 

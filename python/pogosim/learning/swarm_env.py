@@ -126,7 +126,7 @@ class TaskOfRuns:
 
     Attributes:
         swarm: The robots.
-        scaling: Of observations.
+        scaling: That of observations.
         actions: Where they go.
         reward: What a step is worth.
         end: Whether an episode is over before its time.

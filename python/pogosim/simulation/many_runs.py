@@ -98,7 +98,7 @@ class ManyRuns:
         Args:
             category: That of the brain.
             name: Its name in the library.
-            kind: Of a row, which has no gaps.
+            kind: The type of a row, which has no gaps.
 
         Returns:
             The rows of all runs, one after the other; and how many each run has. Shape (runs,).
