@@ -24,6 +24,8 @@ from quotes import Quote, paragraph, processor
 STAMP = re.compile(r"^Measured on (\d{4}-\d\d-\d\d) with v(\d+\.\d+\.\d+): (.+)$")
 BENCH = "build/release/bench/bench_"
 PYTHON = sys.executable
+# VMAS is measured beside environments if VMAS_PYTHON is a Python that has it; it is none of our packages.
+VMAS = ("--vmas", os.environ["VMAS_PYTHON"]) if "VMAS_PYTHON" in os.environ else ()
 
 
 def stamp() -> str:
@@ -136,7 +138,7 @@ TIMES = {
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
     "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
     "first_start": Times("../README.md: first_start", first_start),
-    "environments": Times("learning.md: environments", printed(PYTHON, "bench/learning.py")),
+    "environments": Times("learning.md: environments", printed(PYTHON, "bench/learning.py", *VMAS)),
     "large": Times("../bench/README.md: large", printed(f"{BENCH}large")),
     "light": Times("../bench/README.md: light", printed(f"{BENCH}light")),
     "machine": Times("performance.md: machine", printed(f"{BENCH}machine")),

@@ -294,30 +294,25 @@ class SwarmArrays:
         A byte is the mean over the messages that are long enough to have it, 0 if there is none.
         """
         self._needs_messages = True
-        received = self._kept_messages()
+        received = self._kept("received", lambda: self.brain.received)
+        place = self._kept("place", lambda: received["run"].astype(np.int64) * self.robots + received["robot"])
         shape = (len(self.runs), self.robots)
-        place = received["run"].astype(np.int64) * self.robots + received["robot"]
         places = math.prod(shape)
         if name == "messages":
             counts = np.bincount(place * FACES + received["face"], minlength=places * FACES)
             return counts.reshape(*shape, FACES)
-        size = self.known_payload(name)
-        payloads = self.brain.received_bytes
+        size = int(name[len("message(") : -1])
+        payloads, begin, length = self.brain.received_bytes, received["offset"].astype(np.int64), received["length"]
         means = np.zeros((places, size))
+        least = length.min(initial=MOST_BYTES)  # bytes that all of them have
+        counts = np.maximum(np.bincount(place, minlength=places), 1)
         for byte in range(size):
-            has_it = received["length"] > byte
-            values = payloads[received["offset"][has_it] + byte]
-            counts = np.bincount(place[has_it], minlength=places)
-            means[:, byte] = np.bincount(place[has_it], values, minlength=places) / np.maximum(counts, 1)
+            if byte >= least:
+                has_it = length > byte
+                place, begin, length = place[has_it], begin[has_it], length[has_it]
+                counts = np.maximum(np.bincount(place, minlength=places), 1)
+            means[:, byte] = np.bincount(place, payloads[begin + byte], minlength=places) / counts
         return means.reshape(*shape, size)
-
-    @staticmethod
-    def known_payload(name: str) -> int:
-        """Return how many bytes "message(4)" has."""
-        return int(name[len("message(") : -1])
-
-    def _kept_messages(self) -> Array:
-        return self._kept("received", lambda: self.brain.received)
 
     def _own(self, of_all: Array) -> Array:
         """Return the rows of the category."""
