@@ -123,7 +123,7 @@ def vmas_row(options: argparse.Namespace) -> Row:
             sys.exit(f"learning.py: --vmas: {options.vmas} cannot run VMAS: {said}")
         seconds, decision_s = map(float, done.stdout.split())
         assert np.isclose(decision_s, 0.1), "the length of a step of VMAS"
-        return seconds * options.steps / steps
+        return float(seconds * options.steps / steps)
 
     return Row("VMAS flocking", 0.1, measure)
 
