@@ -68,7 +68,7 @@ def threads_in(lines: list[str], beginning: str) -> int:
 
 
 def sizes(variables: set[str], owner: str) -> dict[str, int]:
-    """Return the bytes of the variables of an owner, by name. A variable may reach to the next one, which is aligned."""
+    """Return the bytes of the variables of an owner, by name. Each may reach to the next one, which is aligned."""
     return {line.split()[0]: int(line.split()[1]) for line in variables if line.endswith(f" {owner}")}
 
 
