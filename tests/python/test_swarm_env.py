@@ -338,7 +338,7 @@ DOMAINS: list[tuple[Any, Any]] = [
 ]
 
 
-@pytest.mark.parametrize(("domain", "fits"), DOMAINS, ids=[str(domain)[:40] for domain, _ in DOMAINS])
+@pytest.mark.parametrize(("domain", "fits"), DOMAINS, ids=[f"domain_{index}" for index in range(len(DOMAINS))])
 def test_keys_are_drawn_for_each_episode(domain: Any, fits: Any) -> None:
     key = "objects.robots.linear_noise_stddev"
     with hosted_env(randomize={key: domain}, runs=12) as env:
