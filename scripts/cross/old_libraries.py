@@ -9,6 +9,8 @@ own:
 
 - the C library with those functions and versions only that were there in glibc 2.27 (2018). It is a list of names,
   without code: a program that runs meets the library of its machine;
+- the parts of the C library until glibc 2.34, libpthread.so.0 and others, with their functions (former_parts.txt):
+  before glibc 2.30, a program that asks libc.so.6 for one of them does not start;
 - the C++ library of gcc 8, in the same way; what our code needs of newer ones comes from the compiler's static library
   and becomes part of the program. Compilers for old distributions do the same (Red Hat's gcc-toolset);
 - newer_functions.c and start_of_executable.c, the little of newer C libraries that is needed all the same.
@@ -32,9 +34,8 @@ from elftools.elf.elffile import ELFFile
 # The newest version of each series that programs may ask for.
 NEWEST = {"GLIBC": (2, 27), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11), "GCC": (7, 0, 0)}
 STUBS = ("libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1")
-# Parts of the C library until glibc 2.34, empty since. On older machines, programs need the functions in them.
+# What the compiler finds first, and links to the libraries above.
 SCRIPTS = ("libc.so", "libm.so", "libstdc++.so", "libgcc_s.so")
-FORMER_PARTS = ("libpthread.so.0", "libdl.so.2", "librt.so.1")
 # Kinds of variables in libraries: their kinds in assembly language, and the sections that they are in.
 VARIABLES = {"STT_OBJECT": ("object", ".bss"), "STT_TLS": ("tls_object", '.tbss, "awT", %nobits')}
 
@@ -43,6 +44,19 @@ def fail(message: str, before: str = "") -> NoReturn:
     """End the program with exit code 2 and one line, after what another program has said."""
     sys.stderr.write(f"{before}old_libraries.py: {message}\n")
     raise SystemExit(2) from None
+
+
+def former_parts() -> dict[str, list[str]]:
+    """Return the functions of each former part of the C library, by the name of its file."""
+    lines = Path(__file__).with_name("former_parts.txt").read_text(encoding="utf-8").splitlines()
+    words = " ".join(line for line in lines if not line.startswith("#")).split()
+    parts: dict[str, list[str]] = {}
+    for word in words:
+        if word.endswith(":"):
+            names = parts.setdefault(word.rstrip(":"), [])
+        else:
+            names.append(word)
+    return parts
 
 
 class Symbol(NamedTuple):
@@ -180,19 +194,24 @@ def make_old_libraries(folder: Path, command: str) -> None:
         fail(f"cannot make the folder {folder}: {error.strerror}")
     for script in SCRIPTS:
         (folder / script).unlink(missing_ok=True)
+    parts = former_parts()
+    moved = {function for functions in parts.values() for function in functions}
     for name in STUBS:
-        make_stub(folder, name, exported(compiler.file(name)), compiler)
-    for name in FORMER_PARTS:
-        make_stub(folder, name, [], compiler)
+        symbols = exported(compiler.file(name))
+        if name == "libc.so.6":
+            for part, functions in parts.items():
+                make_stub(folder, part, [symbol for symbol in symbols if symbol.name in functions], compiler)
+            symbols = [symbol for symbol in symbols if symbol.name not in moved]
+        make_stub(folder, name, symbols, compiler)
     stubs = folder / "stubs"
     newer = make_newer_functions(stubs, compiler)
-    parts = " ".join(f'"{stubs / name}"' for name in FORMER_PARTS)
+    former = " ".join(f'"{stubs / name}"' for name in parts)
     nonshared = compiler.file("libc_nonshared.a")
     loaders = sorted(compiler.file("libc.so.6").parent.glob("ld-linux-*.so.*"))
     if not loaders:
         fail(f"there is no ld-linux-*.so.* beside {compiler.file('libc.so.6')}")
     texts = (
-        f'GROUP ( "{newer}" "{stubs}/libc.so.6" "{nonshared}" {parts} AS_NEEDED ( "{loaders[0]}" ) )',
+        f'GROUP ( "{newer}" "{stubs}/libc.so.6" "{nonshared}" {former} AS_NEEDED ( "{loaders[0]}" ) )',
         f'INPUT ( "{stubs}/libm.so.6" )',
         f'INPUT ( "{stubs}/libstdc++.so.6" "{compiler.file("libstdc++.a")}" )',
         f'GROUP ( "{stubs}/libgcc_s.so.1" -lgcc )',

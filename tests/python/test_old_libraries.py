@@ -128,6 +128,8 @@ def test_programs_ask_for_old_versions_only_and_work(
     asked = versions(tmp_path / "program")
     assert {series for series, _ in asked} == set(NEWEST)
     assert not [(series, number) for series, number in asked if number > NEWEST[series]]
+    # Before glibc 2.30, programs that asked libc.so.6 for a function of threads did not start.
+    assert re.search(r"File: libpthread\.so\.0", output("readelf", "--version-info", "--wide", tmp_path / "program"))
     assert output(*runner, tmp_path / "program") == "42 0.1 7 far 1 1\n"
 
 
