@@ -65,7 +65,6 @@ def test_wrong_argument_is_told_by_the_usage_and_one_line(script: Path, tmp_path
         ("start_up", ["0"]),
         ("table", ["--robots", "0"]),
         ("table", ["-o", __file__]),
-        ("environments", ["5"]),
     ],
 )
 def test_number_that_is_no_use_is_refused(script: str, arguments: list[str], tmp_path: Path) -> None:
