@@ -5,9 +5,9 @@
 
 #include "pogosim/shared_state.h"
 
-int steps = 3;                         // has a value
-static long sums[5];                   // is 0 in the beginning
-double const table[2] = {1.5, 2.5};    // no variable
+int steps = 3;                           // has a value
+static long sums[5];                     // is 0 in the beginning
+double const table[2] = {1.5, 2.5};      // no variable
 char const* const names[] = {"a", "b"};  // filled by the linker, then constant
 POGO_SHARED int of_all = 7;
 _Thread_local int of_thread = 4;
