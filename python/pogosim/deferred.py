@@ -1,6 +1,7 @@
-"""Large packages that are imported when they are used for the first time, by modules that may not need them.
+"""What is imported when it is used for the first time, by modules that may not need it.
 
-    from pogosim.deferred import pandas as pd
+    from pogosim.deferred import pandas as pd                 # a large package
+    __getattr__ = on_demand(__name__, {"Columns": "arrays"})  # names of a package of ours, and their modules
 
 A window in a browser, for example, imports how columns are drawn, but no table comes before one is asked for.
 """
@@ -8,6 +9,8 @@ A window in a browser, for example, imports how columns are drawn, but no table 
 from __future__ import annotations
 
 import importlib
+import sys
+from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +26,24 @@ class Deferred(ModuleType):
             AttributeError: It has no such attribute.
         """
         return getattr(importlib.import_module(self.__name__), name)
+
+
+def on_demand(package: str, modules: Mapping[str, str]) -> Callable[[str], Any]:
+    """Return the function `__getattr__` of a package that imports its modules when one of its names is asked for.
+
+    Args:
+        package: its name.
+        modules: of each name that it offers, the module in it.
+    """
+
+    def attribute(name: str) -> Any:
+        if name not in modules:
+            raise AttributeError(f"module '{package}' has no attribute '{name}'")
+        found = getattr(importlib.import_module(f"{package}.{modules[name]}"), name)
+        setattr(sys.modules[package], name, found)
+        return found
+
+    return attribute
 
 
 if TYPE_CHECKING:

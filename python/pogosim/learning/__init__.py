@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from pogosim.deferred import on_demand
 
 if TYPE_CHECKING:
     from pogosim.learning.gymnasium_env import GymnasiumEnv
@@ -33,12 +34,4 @@ MODULES = {
     "SwarmArrays": "swarm_arrays",
     "SwarmEnv": "swarm_env",
 }
-
-
-def __getattr__(name: str) -> Any:
-    """Return what is used for the first time."""
-    if name not in MODULES:
-        raise AttributeError(f"module 'pogosim.learning' has no attribute '{name}'")
-    found = getattr(importlib.import_module(f"pogosim.learning.{MODULES[name]}"), name)
-    globals()[name] = found
-    return found
+__getattr__ = on_demand(__name__, MODULES)

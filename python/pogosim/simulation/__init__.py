@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from pogosim.deferred import on_demand
 
 if TYPE_CHECKING:
     from pogosim.simulation.arrays import Columns
@@ -35,12 +36,4 @@ MODULES = {
     "SimulationError": "errors",
     "VectorSimulation": "vector",
 }
-
-
-def __getattr__(name: str) -> Any:
-    """Return what is used for the first time."""
-    if name not in MODULES:
-        raise AttributeError(f"module 'pogosim.simulation' has no attribute '{name}'")
-    found = getattr(importlib.import_module(f"pogosim.simulation.{MODULES[name]}"), name)
-    globals()[name] = found
-    return found
+__getattr__ = on_demand(__name__, MODULES)
