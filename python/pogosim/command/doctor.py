@@ -72,8 +72,8 @@ def others_of_that_name() -> list[str]:
 
 
 def is_package(place: Path) -> bool:
-    """Tell whether a folder is a package other than this one."""
-    return place.is_dir() and any(place.glob("*.py")) and place.resolve() != PACKAGE
+    """Tell whether a folder is a package other than this one. A folder of scripts is none: Python takes ours instead."""
+    return (place / "__init__.py").is_file() and place.resolve() != PACKAGE
 
 
 def check_name(found: Installation) -> Finding:  # noqa: ARG001

@@ -43,4 +43,4 @@ def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(opened(sys.argv[1], "--load-only" in sys.argv[2:])))
+    json.dump(opened(sys.argv[1], "--load-only" in sys.argv[2:]), sys.stdout)
