@@ -30,10 +30,20 @@ inline Four larger(Four a, Four b) {
     return a < b ? b : a;
 }
 
+/// Four lanes of two registers: 0 to 3 are those of `low`, 4 to 7 those of `high`.
+template <std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d>
+Four chosen_lanes(Four low, Four high) {
+#if __has_builtin(__builtin_shufflevector)
+    return __builtin_shufflevector(low, high, a, b, c, d);
+#else  // gcc 11
+    return __builtin_shuffle(low, high, FourInts{a, b, c, d});
+#endif
+}
+
 /// The smallest lane, in all lanes.
 inline Four smallest(Four x) {
-    Four const pairs = smaller(x, __builtin_shufflevector(x, x, 2, 3, 0, 1));
-    return smaller(pairs, __builtin_shufflevector(pairs, pairs, 1, 0, 3, 2));
+    Four const pairs = smaller(x, chosen_lanes<2, 3, 0, 1>(x, x));
+    return smaller(pairs, chosen_lanes<1, 0, 3, 2>(pairs, pairs));
 }
 
 inline bool is_any(FourInts mask) {
@@ -62,13 +72,12 @@ struct FourRows {
     Four w;
 };
 inline FourRows transposed(FourRows const& rows) {
-    Four const low_xy = __builtin_shufflevector(rows.x, rows.y, 0, 4, 1, 5);
-    Four const low_zw = __builtin_shufflevector(rows.z, rows.w, 0, 4, 1, 5);
-    Four const high_xy = __builtin_shufflevector(rows.x, rows.y, 2, 6, 3, 7);
-    Four const high_zw = __builtin_shufflevector(rows.z, rows.w, 2, 6, 3, 7);
-    return {__builtin_shufflevector(low_xy, low_zw, 0, 1, 4, 5), __builtin_shufflevector(low_xy, low_zw, 2, 3, 6, 7),
-            __builtin_shufflevector(high_xy, high_zw, 0, 1, 4, 5),
-            __builtin_shufflevector(high_xy, high_zw, 2, 3, 6, 7)};
+    Four const low_xy = chosen_lanes<0, 4, 1, 5>(rows.x, rows.y);
+    Four const low_zw = chosen_lanes<0, 4, 1, 5>(rows.z, rows.w);
+    Four const high_xy = chosen_lanes<2, 6, 3, 7>(rows.x, rows.y);
+    Four const high_zw = chosen_lanes<2, 6, 3, 7>(rows.z, rows.w);
+    return {chosen_lanes<0, 1, 4, 5>(low_xy, low_zw), chosen_lanes<2, 3, 6, 7>(low_xy, low_zw),
+            chosen_lanes<0, 1, 4, 5>(high_xy, high_zw), chosen_lanes<2, 3, 6, 7>(high_xy, high_zw)};
 }
 
 /// How many of four bits are set. (std::popcount() calls a function where the processor may be an old one.)

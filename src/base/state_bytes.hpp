@@ -166,7 +166,9 @@ private:
             take(has_value);
             value.reset();
             if (has_value) {
-                take(value.emplace());
+                typename T::value_type inner{};
+                take(inner);
+                value = std::move(inner);
             }
         } else if constexpr (state_bytes::is_variant<T>) {
             std::size_t index = 0;

@@ -59,7 +59,7 @@ char letter_of(LogLine const& line) {
 
 pogosim::HostedProgram::HostedProgram(std::filesystem::path const& file) {
     WithoutRobot const no_robot;
-    image_ = load_program(file);
+    image_ = std::make_unique<ProgramImage const>(load_program(file));
 }
 
 pogosim::HostedProgram::~HostedProgram() {

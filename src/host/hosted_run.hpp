@@ -29,7 +29,7 @@ public:
     ProgramImage const& image() const { return *image_; }
 
 private:
-    std::optional<ProgramImage> image_;
+    std::unique_ptr<ProgramImage const> image_;
 };
 
 }  // namespace pogosim

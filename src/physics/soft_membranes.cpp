@@ -43,7 +43,7 @@ struct LineOfMovers {
 /// Lane l takes lane (l + kShift) % 4.
 template <std::uint32_t kShift>
 Four shifted(Four x) {
-    return __builtin_shufflevector(x, x, kShift, (kShift + 1) % kLanes, (kShift + 2) % kLanes, (kShift + 3) % kLanes);
+    return chosen_lanes<kShift, (kShift + 1) % kLanes, (kShift + 2) % kLanes, (kShift + 3) % kLanes>(x, x);
 }
 
 template <std::uint32_t kShift>

@@ -16,6 +16,8 @@ namespace pogosim {
 #define sigev_notify_thread_id _sigev_un._tid
 #endif
 
+ThreadTimer::ThreadTimer(TimerClock clock, int signal, void* owner) : clock_(clock), signal_(signal), owner_(owner) {}
+
 void ThreadTimer::prepare() {
     if (exists_) {
         return;
@@ -67,6 +69,8 @@ bool is_of_timer(ThreadTimers const* timers, siginfo_t const& info) {
 }
 
 #else
+
+ThreadTimer::ThreadTimer(TimerClock clock, int signal, void* /*owner*/) : clock_(clock), signal_(signal) {}
 
 void ThreadTimer::prepare() {
     if (timer_ == nullptr) {

@@ -20,7 +20,7 @@ namespace pogosim {
 class ThreadTimer {
 public:
     /// The handler of `signal` finds `owner` in siginfo_t::si_value, see is_of_timer().
-    ThreadTimer(TimerClock clock, int signal, void* owner) : clock_(clock), signal_(signal), owner_(owner) {}
+    ThreadTimer(TimerClock clock, int signal, void* owner);
     ~ThreadTimer() { remove(); }
     ThreadTimer(ThreadTimer const&) = delete;
     ThreadTimer& operator=(ThreadTimer const&) = delete;
@@ -45,9 +45,9 @@ public:
 private:
     TimerClock clock_;
     int signal_;
-    [[maybe_unused]] void* owner_;
     bool is_armed_ = false;
 #ifdef __linux__
+    void* owner_;
     bool exists_ = false;
     timer_t timer_{};
 #else
