@@ -10,6 +10,7 @@ from pathlib import Path
 from pogosim.errors import ToolError
 from pogosim.installation import Installation
 from pogosim.lines import printable_lines, say_error
+from pogosim.system_packages import how_to_install
 
 
 class ProjectError(ToolError):
@@ -44,7 +45,7 @@ def run_make(
         else:
             done = subprocess.run(command, check=False, env=environment, stdout=sys.stderr)
     except FileNotFoundError:
-        raise ProjectError("make is not installed (Debian, Ubuntu: apt install make)") from None
+        raise ProjectError(f"make is not installed ({how_to_install('make')})") from None
     if done.returncode != 0:
         if is_quiet:
             say_error(*printable_lines(done.stdout.decode(errors="replace")).split("\n"))

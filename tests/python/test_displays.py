@@ -12,11 +12,13 @@ from pathlib import Path
 import pytest
 from display import Display, forwarded, open_display
 from pogosim.command.display_check import findings_of
+from pogosim.displays.open_window import OF_X, is_loadable
 from pogosim.displays.opening import Opening, try_module, try_window
 from pogosim.displays.seen import Seen
 from pogosim.displays.surroundings import Surroundings
 from pogosim.displays.symptoms import AT_DISPLAY, HINTS, WITHOUT_DISPLAY, Symptom, hints_of, reason_of
 from pogosim.displays.x_server import Answer, answer_of, numbered
+from pogosim.system_packages import PACKAGES
 from running import ROOT, build_folder
 
 PAGE = ROOT / "docs" / "displays.md"
@@ -35,6 +37,8 @@ X11 = Opening(driver="x11")
 def root(tmp_path: Path) -> Path:
     """Return a folder that stands for / of a machine that is nothing special."""
     (tmp_path / "proc").mkdir()
+    (tmp_path / "etc").mkdir()
+    (tmp_path / "etc" / "os-release").write_text("ID=debian\n")
     (tmp_path / "proc" / "version").write_text("Linux version 6.1.0-18-amd64 (debian-kernel@lists.debian.org)")
     return tmp_path
 
@@ -88,9 +92,43 @@ def test_missing_library_is_named_with_where_it_comes_from(
     root: Path, error: str, advice: str, display: dict[str, str]
 ) -> None:
     opening = Opening(load_error=f"{error}\n  Reason: tried: '/usr/lib'")
-    found = reason_in(Surroundings(display, root, system="Linux"), opening, Answer.CONNECTS)
+    system = "Darwin" if OF_MACOS in error else "Linux"
+    found = reason_in(Surroundings(display, root, system=system), opening, Answer.CONNECTS)
     assert (found.section, found.found) == ("sdl-is-missing", error)
     assert found.advice_with_link == f"{advice}; see docs/displays.md#sdl-is-missing"
+
+
+@pytest.mark.parametrize(
+    ("release", "advice"),
+    [
+        ("ID=debian", "apt install libx11-6 libxcursor1"),
+        ('NAME="Rocky Linux"\nID="rocky"\nID_LIKE="rhel centos fedora"', "dnf install libX11 libXcursor"),
+        ("ID=manjaro\nID_LIKE=arch", "pacman -S libx11 libxcursor"),
+        ("ID=nixos", "install what Debian calls libx11-6 libxcursor1"),
+    ],
+)
+def test_missing_library_of_x_is_named_with_the_package_of_the_distribution(
+    root: Path, release: str, advice: str
+) -> None:
+    (root / "etc" / "os-release").write_text(f"{release}\n")
+    opening = Opening(error="x11 not available", x_libraries_missing=("libX11.so.6", "libXcursor.so.1"))
+    found = reason(root, opening, Answer.CONNECTS, DISPLAY=":0")
+    assert (found.section, found.found) == (
+        "libraries-of-x-are-missing",
+        "no libX11.so.6, no libXcursor.so.1, which SDL needs for X",
+    )
+    assert found.advice == advice
+
+
+def test_library_of_x_that_a_window_can_do_without_is_no_reason(root: Path) -> None:
+    opening = Opening(driver="offscreen", x_libraries_missing=("libXss.so.1",))
+    assert reason(root, opening, Answer.CONNECTS, DISPLAY=":0").section == "the-connection-is-refused"
+
+
+def test_library_that_is_not_there_is_found_by_loading_it() -> None:
+    assert is_loadable("libc.so.6")
+    assert not is_loadable("libXno-such-library.so.6")
+    assert set(OF_X) <= set(PACKAGES)
 
 
 def test_macos_needs_no_variable_of_a_display(root: Path) -> None:

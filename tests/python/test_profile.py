@@ -29,6 +29,7 @@ from pogosim.firmware.profile.routines import FAMILIES, family_of, name_in_sourc
 from pogosim.firmware.profile.sources import Sources
 from pogosim.firmware.profile.table import COLUMNS
 from pogosim.installation import Installation
+from pogosim.system_packages import FOR_ROBOTS, how_to_install
 from profiles import (
     BUDGET_CYCLES,
     CLOCK_HZ,
@@ -768,7 +769,7 @@ def test_missing_compiler_is_one_clear_line(
     simulator()
     copy_template(tmp_path / "swarm")
     monkeypatch.setenv("PATH", str(tmp_path))
-    advice = f"is not installed (Debian, Ubuntu: apt install gcc-{TRIPLE} picolibc-{TRIPLE})"
+    advice = f"is not installed ({how_to_install(FOR_ROBOTS)})"
     assert refusal(capsys, "swarm") == f"the compiler for robots, {TRIPLE}-gcc, {advice}"
     shutil.copy(TEMPLATE / "main.c", "one.c")
     assert refusal(capsys, "one.c", "-c", "c.yaml") == f"the compiler for robots, {TRIPLE}-gcc, {advice}"

@@ -24,6 +24,7 @@ from pogosim.errors import ToolError
 from pogosim.extras import installing
 from pogosim.installation import PACKAGE, Installation, InstallationError, find_installation
 from pogosim.lines import say
+from pogosim.system_packages import FOR_ROBOTS, how_to_install
 
 PROGRAM = """#include "pogobase.h"
 typedef struct { int n; } USERDATA;
@@ -72,7 +73,7 @@ def others_of_that_name() -> list[str]:
 
 
 def is_package(place: Path) -> bool:
-    """Tell whether a folder is a package other than this one. A folder of scripts is none: Python takes ours instead."""
+    """Tell whether a folder is a package other than this one. A folder of scripts is none: Python takes ours."""
     return (place / "__init__.py").is_file() and place.resolve() != PACKAGE
 
 
@@ -87,12 +88,12 @@ def check_name(found: Installation) -> Finding:  # noqa: ARG001
 
 def check_c(found: Installation) -> Finding:
     """Compile and run a program in C."""
-    return check_programs(found, "C programs", ".c", "apt install gcc")
+    return check_programs(found, "C programs", ".c", how_to_install("gcc"))
 
 
 def check_cpp(found: Installation) -> Finding:
     """Compile and run a program in C++."""
-    return check_programs(found, "C++ programs", ".cpp", "apt install g++")
+    return check_programs(found, "C++ programs", ".cpp", how_to_install("g++"))
 
 
 def check_programs(found: Installation, purpose: str, suffix: str, advice: str) -> Finding:
@@ -129,7 +130,7 @@ def check_programs(found: Installation, purpose: str, suffix: str, advice: str) 
 def check_make(found: Installation) -> Finding:  # noqa: ARG001
     """Look for make."""
     if shutil.which("make") is None:
-        return Finding("Projects", False, "make is not installed", "apt install make")
+        return Finding("Projects", False, "make is not installed", how_to_install("make"))
     return Finding("Projects", True, first_line("make", "--version"))
 
 
@@ -137,19 +138,18 @@ def check_shared_state(found: Installation) -> Finding:
     """Try the tool that finds variables shared by mistake."""
     purpose = "Shared variables"
     if not found.shared_state.is_file():
-        return Finding(
-            purpose, False, "this Pogosim has no pogosim-shared-state", "apt install libdw-dev, then build it again"
-        )
+        advice = how_to_install("libdw's headers") + ", then build it again"
+        return Finding(purpose, False, "this Pogosim has no pogosim-shared-state", advice)
     done = subprocess.run([found.shared_state, "--help"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        return Finding(purpose, False, f"pogosim-shared-state does not run: {last_line(done)}", "apt install libdw1")
+        return Finding(purpose, False, f"pogosim-shared-state does not run: {last_line(done)}", how_to_install("libdw"))
     return Finding(purpose, True, "checked at every make sim")
 
 
 def check_films(found: Installation) -> Finding:  # noqa: ARG001
     """Look for ffmpeg."""
     if shutil.which("ffmpeg") is None:
-        return Finding("Films", False, "ffmpeg is not installed", "apt install ffmpeg")
+        return Finding("Films", False, "ffmpeg is not installed", how_to_install("ffmpeg"))
     version = " ".join(first_line("ffmpeg", "-version").split()[:3])
     encoders = subprocess.run(["ffmpeg", "-hide_banner", "-encoders"], capture_output=True, text=True, check=False)
     lacking = [name for name in ("libx264", "libvpx-vp9") if name not in encoders.stdout]
@@ -165,13 +165,16 @@ def check_batches(found: Installation) -> Finding:  # noqa: ARG001
 
 
 def check_clusters(found: Installation) -> Finding:  # noqa: ARG001
-    """Look for the packages and programs that batches on several machines need."""
-    lacking = [name for name in ("distributed", "dask_jobqueue") if importlib.util.find_spec(name) is None]
+    """Say what batches on several machines can use. A job script that runs pogobatch needs no package."""
     slurm = "SLURM's sbatch is there" if shutil.which("sbatch") else "no sbatch of SLURM"
-    if "distributed" in lacking:
-        return Finding("Clusters", False, f"Dask is not installed; {slurm}", installing("dask"))
-    jobqueue = "without dask-jobqueue" if lacking else "with dask-jobqueue"
-    return Finding("Clusters", True, f"Dask is installed, {jobqueue}; {slurm}")
+    scripts = f"job scripts need nothing more; {slurm}"
+    lacking = [
+        name for name in ("distributed", "dask_jobqueue", "cryptography") if importlib.util.find_spec(name) is None
+    ]
+    if lacking:
+        optional = f"optional, for --slurm and --jobqueue: {installing('slurm')}"
+        return Finding("Clusters", True, scripts, optional)
+    return Finding("Clusters", True, f"{scripts}; --slurm and --jobqueue work")
 
 
 def check_searches(found: Installation) -> Finding:  # noqa: ARG001
@@ -188,7 +191,7 @@ def check_robots(found: Installation) -> Finding:  # noqa: ARG001
     """Look for the robots' compiler and SDK."""
     name = "riscv64-unknown-elf-gcc"
     if shutil.which(name) is None:
-        advice = "apt install gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf"
+        advice = how_to_install(FOR_ROBOTS)
         return Finding("Real robots", False, f"their compiler, {name}, is not installed", advice)
     sdk = os.environ.get("POGO_SDK")
     if not sdk:

@@ -18,6 +18,7 @@ from pogosim.extensions import let_find_models
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
 from pogosim.projects import run_make
+from pogosim.system_packages import how_to_install
 
 EPILOG = """All other options are the simulator's: -c CONFIG, -g (no window), -s SEED, --set KEY=VALUE and others.
 Without -c, a project is run with its conf/test.yaml. Without PROJECT, it is the project in the working folder; where
@@ -102,7 +103,7 @@ def compiled(source: Path, made: Path, flags: Sequence[str], pogosim: Installati
         code = subprocess.run(command, check=False).returncode
     except FileNotFoundError:
         raise RunError(
-            f"the compiler '{command[0]}' is not installed (Debian, Ubuntu: apt install gcc g++ make)"
+            f"the compiler '{command[0]}' is not installed ({how_to_install('gcc', 'g++', 'make')})"
         ) from None
     if code != 0:
         raise RunError(f"{source} does not compile; see the compiler's messages above")

@@ -17,8 +17,20 @@ PLACE_PX = 0
 NOWHERE = ("offscreen", "dummy", "evdev", "KMSDRM", "directfb")
 
 
+# What SDL loads when it takes X, on Linux.
+OF_X = (
+    "libX11.so.6",
+    "libXext.so.6",
+    "libXcursor.so.1",
+    "libXi.so.6",
+    "libXfixes.so.3",
+    "libXrandr.so.2",
+    "libXss.so.1",
+)
+
+
 def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
-    """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's."""
+    """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's, "missing" libraries of X."""
     try:
         sdl = ctypes.CDLL(module)  # with the libraries that it needs
     except OSError as error:
@@ -31,15 +43,30 @@ def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
     sdl.SDL_GetWindowSurface.restype = ctypes.c_void_p
     sdl.SDL_GetWindowSurface.argtypes = [ctypes.c_void_p]
     if sdl.SDL_InitSubSystem(VIDEO) != 0:
-        return {"error": sdl.SDL_GetError().decode(errors="replace")}
+        return {"error": sdl.SDL_GetError().decode(errors="replace"), "missing": missing_libraries()}
     driver = sdl.SDL_GetCurrentVideoDriver().decode(errors="replace")
     if driver in NOWHERE:
-        return {"driver": driver}
+        return {"driver": driver, "missing": missing_libraries()}
     window = sdl.SDL_CreateWindow(b"Pogosim", PLACE_PX, PLACE_PX, SIZE_PX, SIZE_PX, HIDDEN)
     # X draws without OpenGL, so a window is enough there.
     if not window or (driver == "wayland" and not sdl.SDL_GetWindowSurface(window)):
-        return {"driver": driver, "error": sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"}
+        reason = sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"
+        return {"driver": driver, "error": reason, "missing": missing_libraries()}
     return {"driver": driver}
+
+
+def missing_libraries() -> str:
+    """Return which libraries of X cannot be loaded, separated by spaces."""
+    return " ".join(name for name in OF_X if sys.platform == "linux" and not is_loadable(name))
+
+
+def is_loadable(library: str) -> bool:
+    """Tell whether the system has a library."""
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ class Opening:
         driver: SDL's way to the display: x11, wayland, cocoa; offscreen and others draw nowhere. "" if it has none.
         error: SDL's reason, if no window opened.
         said: What libraries have printed on the way.
+        x_libraries_missing: Libraries of X that SDL would load, and that are not there; looked for if no window opened.
         has_answered: False if it took longer than a run waits.
     """
 
@@ -33,6 +34,7 @@ class Opening:
     error: str = ""
     said: str = ""
     has_answered: bool = True
+    x_libraries_missing: tuple[str, ...] = ()
 
     @property
     def is_open(self) -> bool:
@@ -69,7 +71,8 @@ def tried(arguments: Sequence[str], environment: Mapping[str, str], longest_s: f
         found = json.loads(done.stdout)
     except ValueError:
         return Opening(error=end_of(done), said=said)
-    return Opening(found.get("load", ""), found.get("driver", ""), found.get("error", ""), said)
+    missing = tuple(found.get("missing", "").split())
+    return Opening(found.get("load", ""), found.get("driver", ""), found.get("error", ""), said, True, missing)
 
 
 def end_of(done: subprocess.CompletedProcess[str]) -> str:

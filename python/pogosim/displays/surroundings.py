@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pogosim.system_packages import how_to_install
+
 CONTAINER_FILES = {".dockerenv": "Docker", "run/.containerenv": "Podman"}
 CONTAINER_VARIABLES = {"APPTAINER_CONTAINER": "Apptainer", "SINGULARITY_CONTAINER": "Apptainer"}
 DISPLAY_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
@@ -78,6 +80,10 @@ class Surroundings:
     def x_socket(self, number: int) -> Path:
         """Return where the X server of a display of this machine listens."""
         return self.root / SOCKETS / f"X{number}"
+
+    def how_to_install(self, *things: str) -> str:
+        """Return what installs some of the packages of the system, see system_packages.how_to_install()."""
+        return how_to_install(*things, root=self.root, system=self.system)
 
     def described(self) -> str:
         """Return it in a few words, such as "WSL 2 with WSLg, over ssh"; "" where nothing is special."""

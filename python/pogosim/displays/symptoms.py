@@ -11,7 +11,7 @@ from pogosim.displays.hints import (
     is_far_away,
     lacks_a_runtime_folder,
 )
-from pogosim.displays.missing_library import library_is_missing
+from pogosim.displays.missing_library import library_is_missing, library_of_x_is_missing
 from pogosim.displays.no_display import (
     has_no_display,
     is_batch_without_display,
@@ -56,6 +56,7 @@ AT_DISPLAY: tuple[tuple[str, Look], ...] = (
     ("an-x-server-in-windows", has_an_old_setting_of_wsl),
     ("in-a-container", is_container_without_sockets),
     ("nothing-answers", is_stale),
+    ("libraries-of-x-are-missing", library_of_x_is_missing),
     ("the-connection-is-refused", is_refused),
     ("no-opengl", lacks_opengl),
     ("xdg_runtime_dir", lacks_a_runtime_folder),

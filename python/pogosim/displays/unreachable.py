@@ -93,7 +93,7 @@ def lacks_opengl(seen: Seen) -> Diagnosis | None:
     if not lines and not has_no_egl:
         return None
     found = lines[0] if lines else seen.opening.error
-    return f"no OpenGL: {found}", "apt install libgl1-mesa-dri libegl1, or SDL_VIDEODRIVER=x11, which needs none"
+    return f"no OpenGL: {found}", f"{seen.here.how_to_install('OpenGL')}, or SDL_VIDEODRIVER=x11, which needs none"
 
 
 def has_no_compositor(seen: Seen) -> Diagnosis | None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from pogosim.errors import PictureError
 from pogosim.outputs import partial_output
+from pogosim.system_packages import how_to_install
 
 # As films that runs make of themselves, docs/pictures.md: H.264 and VP9 in the colours of players, and for GIF a
 # palette for each frame.
@@ -34,7 +34,7 @@ def check_ffmpeg(suffix: str) -> None:
     Raises:
         PictureError: It is not there; says how to install it.
     """
-    install = "brew install ffmpeg" if sys.platform == "darwin" else "sudo apt install ffmpeg"
+    install = how_to_install("ffmpeg")
     if shutil.which("ffmpeg") is None:
         raise PictureError(f"{suffix} films need ffmpeg, which is not installed: {install}; or make a page, .html")
     command = ["ffmpeg", "-hide_banner", "-loglevel", "error", "-encoders"]

@@ -14,6 +14,7 @@ from pogosim.firmware import is_firmware
 from pogosim.firmware.profile.sources import folders_of
 from pogosim.installation import Installation
 from pogosim.projects import run_make
+from pogosim.system_packages import FOR_ROBOTS, how_to_install
 
 TRIPLE = "riscv64-unknown-elf"
 ROBOT_COMPILERS = {".c": f"{TRIPLE}-gcc", ".cpp": f"{TRIPLE}-g++"}
@@ -101,10 +102,7 @@ def check_compiler(folder: Path) -> None:
     """
     compiler = ROBOT_COMPILERS[".cpp" if any(folder.glob("*.cpp")) else ".c"]
     if shutil.which(compiler) is None:
-        raise FirmwareError(
-            f"the compiler for robots, {compiler}, is not installed "
-            f"(Debian, Ubuntu: apt install gcc-{TRIPLE} picolibc-{TRIPLE})"
-        )
+        raise FirmwareError(f"the compiler for robots, {compiler}, is not installed ({how_to_install(FOR_ROBOTS)})")
 
 
 @contextlib.contextmanager
