@@ -4,8 +4,8 @@
 include_guard()
 include(CheckCXXSourceCompiles)
 
-set(POGOSIM_BOX2D AUTO CACHE STRING "The physics engine box2d: ON, OFF, or AUTO: if Box2D 2.4 is there")
-set_property(CACHE POGOSIM_BOX2D PROPERTY STRINGS AUTO ON OFF)
+include("${CMAKE_CURRENT_LIST_DIR}/closed_list.cmake")
+pogosim_choice(POGOSIM_BOX2D AUTO "The physics engine box2d: ON, OFF, or AUTO: if Box2D 2.4 is there" AUTO ON OFF)
 
 set(POGOSIM_HAS_BOX2D OFF)
 if(POGOSIM_BOX2D STREQUAL "AUTO" OR POGOSIM_BOX2D)

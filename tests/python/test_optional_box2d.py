@@ -65,3 +65,9 @@ def test_build_does_without(option: str, tmp_path: Path) -> None:
     assert code == 0
     assert "has it: OFF" in said
     assert ("Box2D is not installed" in said) == ("DISABLE" in option)
+
+
+def test_value_that_is_not_in_the_list_is_one_clear_error(tmp_path: Path) -> None:
+    code, said = configured(tmp_path, "-DPOGOSIM_BOX2D=maybe")
+    assert code == 1
+    assert 'POGOSIM_BOX2D is "maybe"; expected one of AUTO, ON, OFF: cmake -DPOGOSIM_BOX2D=AUTO' in said
