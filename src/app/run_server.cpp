@@ -12,22 +12,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
-#include <iterator>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#ifdef __linux__
-#include <sys/prctl.h>
-#else
-#include <mach/mach.h>
-#include <sys/event.h>
-
-#include "base/background_thread.hpp"
-#endif
-
+#include "app/process_copies.hpp"
 #include "process/process.hpp"
 #include "process/program_memory.hpp"
 #include "record/tables_module.hpp"
@@ -108,32 +97,8 @@ struct Held {
     bool operator==(Held const&) const = default;
 };
 
-/// How many entries a folder has; 0 where there is none.
-std::ptrdiff_t entries_of(char const* folder) {
-    std::error_code error;
-    auto const entries = std::filesystem::directory_iterator(folder, error);
-    return error ? 0 : std::distance(begin(entries), end(entries));
-}
-
-std::ptrdiff_t count_threads() {
-#ifdef __linux__
-    return entries_of("/proc/self/task");
-#else
-    thread_act_array_t threads = nullptr;
-    mach_msg_type_number_t count = 0;
-    if (task_threads(mach_task_self(), &threads, &count) != KERN_SUCCESS) {
-        return 0;
-    }
-    for (mach_msg_type_number_t i = 0; i < count; ++i) {
-        mach_port_deallocate(mach_task_self(), threads[i]);
-    }
-    vm_deallocate(mach_task_self(), reinterpret_cast<vm_address_t>(threads), count * sizeof(*threads));
-    return count;
-#endif
-}
-
 Held held_now() {
-    return {.threads = count_threads(), .files = entries_of("/dev/fd")};
+    return {.threads = count_threads(), .files = count_entries("/dev/fd")};
 }
 
 std::optional<Held> held_before_constructors;
@@ -164,18 +129,7 @@ bool log_to(std::string const& file) {
 
 /// This process, a copy, ends with the server.
 void end_with(pid_t server) {
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#else
-    start_background_thread("waiting for the end of the server", [server] {
-        int const queue = kqueue();
-        struct kevent end = {};
-        EV_SET(&end, static_cast<uintptr_t>(server), EVFILT_PROC, EV_ADD, NOTE_EXIT, 0, nullptr);
-        if (queue >= 0 && kevent(queue, &end, 1, &end, 1, nullptr) > 0) {
-            end_process(EXIT_FAILURE);
-        }
-    }).detach();
-#endif
+    end_soon_after(server);
     if (getppid() != server) {
         end_process(EXIT_FAILURE);
     }

@@ -40,6 +40,9 @@ struct Constructors {
     std::vector<void (*)()> functions;
 };
 
+/// Notes that these functions of a program are about to run.
+void note_constructors(pogosim_program const& program, LoadedObject const& object, std::vector<void (*)()> functions);
+
 /// Returns the static objects of a program in memory; null: it has none to construct.
 std::shared_ptr<Constructors const> constructors_of(pogosim_program const& program);
 
