@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "base/error.hpp"
+#include "base/number_from.hpp"
 
 namespace pogosim {
 
@@ -162,13 +161,11 @@ std::optional<double> parse_number(std::string_view field) {
     if (field.starts_with('+') && !field.starts_with("+-")) {
         field.remove_prefix(1);
     }
-    double value = 0.0;
-    char const* const end = field.data() + field.size();
-    auto const [stop, error] = std::from_chars(field.data(), end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value)) {
+    if (decimal_at_start(field).size() != field.size()) {
         return std::nullopt;
     }
-    return value;
+    double const value = number_from(std::string(field));
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::string in_quotes(std::string_view text) {

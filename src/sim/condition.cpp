@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/nearest_name.hpp"
+#include "base/number_from.hpp"
 
 namespace pogosim {
 
@@ -152,12 +153,12 @@ private:
     }
 
     Tree number() {
-        float found = 0.0F;
-        auto const [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), found);
-        if (error != std::errc()) {
+        std::string const digits(decimal_at_start(text_.substr(at_)));
+        auto const found = static_cast<float>(number_from(digits));
+        if (!std::isfinite(found)) {
             fail("expected a number");
         }
-        at_ = static_cast<std::size_t>(end - text_.data());
+        at_ += digits.size();
         return std::make_unique<ConditionNode const>(ConditionNode{.number = found});
     }
 
