@@ -203,6 +203,8 @@ ParsedCommandLine parse_command_line(int argc, char const* const* argv) {
     declare_options(app, parsed.options);
     try {
         app.parse(normalised_arguments(argc, argv));
+    } catch (CLI::CallForVersion const& asked) {
+        parsed.exit_code = app.remaining().empty() ? app.exit(asked) : report_usage(app, unknown_argument(app));
     } catch (CLI::Success const& asked) {
         parsed.exit_code = app.exit(asked);
     } catch (CLI::ParseError const& error) {

@@ -18,6 +18,7 @@
 #include "sim/files_of_run.hpp"
 #include "sim/object_facts.hpp"
 #include "sim/robot_values.hpp"
+#include "version/commit.hpp"
 #include "world/link_places.hpp"
 
 namespace pogosim {
@@ -49,13 +50,14 @@ std::string polygons_as_yaml(Arena const& arena) {
     return text;
 }
 
-/// Schema metadata: program_version, configuration and resolved_configuration (see ConfigurationText), objects (see
+/// Schema metadata: program_version, program_commit, configuration and resolved_configuration (see ConfigurationText), objects (see
 /// object_facts()), and arena_polygons (YAML list of lists of {x, y}, mm). `run.mm_to_pixels` is found here.
 std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, World const& world,
                                                               RunValues run) {
     run.mm_to_pixels = fitted_mm_to_pixels(scenario.view, world.arena);
     ConfigurationText const text = configuration_text(scenario, run);
     return {{"program_version", POGOSIM_VERSION_STRING},
+            {"program_commit", commit()},
             {"configuration", text.written},
             {"resolved_configuration", text.resolved},
             {"objects", object_facts(scenario, world)},

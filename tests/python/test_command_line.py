@@ -103,9 +103,17 @@ def test_version_is_that_of_the_data_file(tmp_path: Path, flag: str) -> None:
     version = command(tmp_path, flag)
     assert (version.code, version.errors) == (0, "")
     first, *built = version.output.splitlines()
-    saved = hello(tmp_path).table().schema.metadata[b"program_version"].decode()
-    assert first == f"pogosim {saved}"
+    saved = hello(tmp_path).table().schema.metadata
+    assert first == f"pogosim {saved[b'program_version'].decode()}"
     assert [line.split(": ")[0] for line in built] == ["commit", "compiler", "engines", "Arrow"]
+    assert built[0] == f"commit: {saved[b'program_commit'].decode()}"
+
+
+@pytest.mark.parametrize("more", ["extra", "--json"])
+def test_version_with_what_it_does_not_know_is_refused(tmp_path: Path, more: str) -> None:
+    result = command(tmp_path, "--version", more)
+    assert (result.code, result.output) == (2, "")
+    assert result.errors.startswith(f"Error: unknown argument '{more}'")
 
 
 @pytest.mark.parametrize(
