@@ -44,7 +44,8 @@ void sync_folder_of(std::filesystem::path const& path) {
 /// renamed onto another is written to the disk at once by ext4 (auto_da_alloc), and a batch, which removes it soon,
 /// waits for milliseconds. A file that need not be synced is exchanged with the other one instead, where the system can
 /// do that.
-bool put_in_place(std::filesystem::path const& file, std::filesystem::path const& other, bool is_synced) {
+bool put_in_place(std::filesystem::path const& file, std::filesystem::path const& other,
+                  [[maybe_unused]] bool is_synced) {
 #ifdef RENAME_EXCHANGE
     if (!is_synced && renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0) {
         unlink(file.c_str());
