@@ -10,6 +10,9 @@ if(CCACHE_PROGRAM)
     if(CMAKE_BUILD_TYPE MATCHES "^(Release|MinSizeRel)?$" OR POGOSIM_SANITIZE)
         list(APPEND ccache_settings CCACHE_NOHASHDIR=1)
     endif()
+    if(pogosim_tools)  # compilers that scripts/cross/dependencies.py has written, into which it puts all that they depend on
+        list(APPEND ccache_settings CCACHE_COMPILERCHECK=content)
+    endif()
     if(POGOSIM_PRECOMPILE)  # without these, ccache would keep nothing that is compiled with precompiled headers
         list(APPEND ccache_settings CCACHE_SLOPPINESS=pch_defines,time_macros)
     endif()

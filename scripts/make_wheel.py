@@ -20,6 +20,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+from cross.check_mach_o import check
 from cross.dependencies import CROSS, PYARROW, ROOT, SDL_PACKAGE, TARGETS, build, patchelf, run
 from wheel_licences import add_licences, libraries_for
 
@@ -124,6 +125,7 @@ def install_simulator(name: str, destination: Path) -> str:
         "POGOSIM_PYTHON_PACKAGE": "ON",
         "POGOSIM_PYARROW": arrow,
         "POGOSIM_SDL_FROM_PACKAGE": "ON",
+        "POGOSIM_WERROR": "OFF" if TARGETS[name].compiler else "ON",  # zig is of one version
         **dict.fromkeys(("POGOSIM_BUILD_TESTS", "POGOSIM_BUILD_BENCH", "POGOSIM_BUILD_EXAMPLES"), "OFF"),
     }
     run(
@@ -142,11 +144,23 @@ def install_simulator(name: str, destination: Path) -> str:
     return metadata.name.removeprefix("pyarrow-").removesuffix(".dist-info")
 
 
+def check_macos(name: str, simulator: Path) -> None:
+    """End the program if files of an installed simulator are not as macOS needs them."""
+    pyarrow = CROSS / name / "pyarrow" / "pyarrow"
+    libraries = [*pyarrow.glob("libarrow.*.dylib"), *pyarrow.glob("libparquet.*.dylib")]
+    files = [*sorted(simulator.glob("lib/*.dylib")), simulator / "bin" / "pogosim-without-program"]
+    if not check(name, files, [*libraries, CROSS / name / "prefix" / "lib" / "libSDL2.dylib"], movable=True):
+        raise SystemExit("make_wheel.py: not all files are as macOS needs them, see above")
+
+
 def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     """Make a wheel in a folder for a target, and return it."""
     platform = TARGETS[name].platform
     unpacked = built_wheel(folder, with_environment, "wheel.cmake=false")
-    change_metadata(unpacked, install_simulator(name, unpacked / "pogosim" / "simulator"))
+    simulator = unpacked / "pogosim" / "simulator"
+    change_metadata(unpacked, install_simulator(name, simulator))
+    if platform.startswith("macosx"):
+        check_macos(name, simulator)
     add_licences(unpacked, libraries_for(name), CROSS / "sources")
     (facts,) = unpacked.glob("*.dist-info/WHEEL")
     text = re.sub(r"(?m)^Root-Is-Purelib: .*$", "Root-Is-Purelib: false", facts.read_text(encoding="utf-8"))

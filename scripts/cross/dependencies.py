@@ -18,10 +18,12 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
 from cross.old_libraries import make_old_libraries
+from cross.system_libcpp import STUB, write_stub
 
 ROOT = Path(__file__).resolve().parents[2]
 CROSS = ROOT / "build" / "cross"
@@ -187,6 +189,14 @@ set_target_properties(SDL2::SDL2 PROPERTIES IMPORTED_LOCATION "{library}"
     )
 
 
+# zig has no headers for C++ either when it is told not to link to its own library of C++.
+LINKS = f"""case " $* " in
+    *" -c "* | *" -E "* | *" -S "* | *" -M "* | *" -MM "*) ;;
+    *) set -- "$@" -nostdlib++ "${{0%/*}}/{STUB}" ;;
+esac
+"""
+
+
 def write_zig_tools(target: str, folder: Path) -> None:
     """Write programs that call zig as CMake calls compilers and archivers: by one name."""
     found = importlib.util.find_spec("ziglang")
@@ -197,9 +207,21 @@ def write_zig_tools(target: str, folder: Path) -> None:
     processor = target.removeprefix("macos-").replace("arm64", "aarch64")
     folder.mkdir(exist_ok=True)
     machine = f"-target {processor}-macos.12.0"
-    for name, words in {"cc": f"cc {machine}", "c++": f"c++ {machine}", "ar": "ar", "ranlib": "ranlib"}.items():
+    # Headers of a newer library than macOS 12's do without what that one has not.
+    availability = "_LIBCPP_HAS_VENDOR_AVAILABILITY_ANNOTATIONS"
+    libcpp = f"-U{availability} -D{availability}=1"
+    for name, words in {
+        "cc": f"cc {machine}",
+        "c++": f"c++ {machine} {libcpp}",
+        "ar": "ar",
+        "ranlib": "ranlib",
+    }.items():
         tool = folder / name
-        tool.write_text(f"#!/bin/sh\nexec '{zig}' {words} \"$@\"\n", encoding="utf-8")
+        link = LINKS if name == "c++" else ""
+        # ccache knows a compiler by its file, so this one names the version, and is left as it is when nothing is new.
+        text = f"#!/bin/sh\n# zig {version('ziglang')}\n{link}exec '{zig}' {words} \"$@\"\n"
+        if not tool.exists() or tool.read_text(encoding="utf-8") != text:
+            tool.write_text(text, encoding="utf-8")
         tool.chmod(0o755)
 
 
@@ -218,7 +240,9 @@ def build(name: str) -> Path:
         make_old_libraries(folder / "old", target.compiler)
     else:
         write_zig_tools(name, folder / "tools")
-    fetch_package(PYARROW, target, folder)
+    pyarrow = fetch_package(PYARROW, target, folder)
+    if not target.compiler:
+        write_stub(name, pyarrow, folder / "tools")
     write_sdl(prefix, sources, fetch_package(SDL_PACKAGE, target, folder))
     defined: dict[str, str | Path] = {
         "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name(f"{name}.cmake"),

@@ -2,6 +2,7 @@
 foreach(language IN ITEMS C CXX)
     set(CMAKE_SHARED_MODULE_CREATE_${language}_FLAGS "-shared -Wl,-headerpad_max_install_names")
     set(CMAKE_SHARED_LIBRARY_CREATE_${language}_FLAGS "-shared -Wl,-headerpad_max_install_names")
+    set(CMAKE_SHARED_LIBRARY_RUNTIME_${language}_FLAG "-Wl,-rpath,")  # CMake asks the Mac that it runs on
     unset(CMAKE_${language}_OSX_COMPATIBILITY_VERSION_FLAG)
     unset(CMAKE_${language}_OSX_CURRENT_VERSION_FLAG)
 endforeach()
