@@ -1,12 +1,15 @@
-"""How many robot-steps an environment for learning makes per second, with a policy in NumPy, beside VMAS.
+"""How many robot-steps an environment for learning makes per second, with a policy in NumPy, beside VMAS and JaxMARL.
 
-    .venv/bin/python bench/learning.py [--runs 256] [--robots 20] [--steps 100] [--vmas PYTHON]
+    .venv/bin/python bench/learning.py [--runs 256] [--robots 20] [--steps 100] [--vmas PYTHON] [--jaxmarl PYTHON]
 
 A `SwarmEnv` of many runs: a policy multiplies what the robots see (three light sensors; with communication also the
 messages that they heard) with a matrix, and gives them powers of motors, and a message of 4 bytes to send at every
 decision. The robots, on 10^4 mm2 each, have bodies; time steps are of 16 ms. VMAS (Bettini et al., "VMAS: A Vectorized
 Multi-Agent Simulator for Collective Robot Learning", DARS 2022) does the same with its scenario `flocking`, whose steps
-are of 0.1 s, if PYTHON, the program, has the package `vmas`, which is not one of those that Pogosim needs.
+are of 0.1 s, if PYTHON, the program, has the package `vmas`, which is not one of those that Pogosim needs. JaxMARL
+(Rutherford et al., "JaxMARL: Multi-Agent RL Environments and Algorithms in JAX", NeurIPS 2024) does so with its
+scenario `simple_spread`, also of 0.1 s: as many landmarks as agents, each of which sees all others. Policy and steps
+are compiled as one loop, and compiling does not count.
 
 Times are processor time, with one thread each, so that other work on the machine counts less; the rows take turns, and
 the best of ROUNDS counts.
@@ -52,6 +55,33 @@ with torch.no_grad():
     for _ in range(steps):
         seen = env.step([torch.tanh(own @ matrix) for own in seen])[0]
 print(time.process_time() - start_s, env.world.dt)
+"""
+
+JAXMARL = """
+import os, sys, time
+os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+os.environ["JAX_PLATFORMS"] = "cpu"
+import jax, jax.numpy as jnp
+from jaxmarl import make
+runs, robots, steps = map(int, sys.argv[1:])
+env = make("MPE_simple_spread_v3", num_agents=robots, num_landmarks=robots, action_type="Continuous", max_steps=10**9)
+keys = jax.random.split(jax.random.PRNGKey(1), runs)
+seen, state = jax.vmap(env.reset)(keys)
+shape = (seen[env.agents[0]].shape[-1], env.action_space(env.agents[0]).shape[0])
+matrix = jax.random.uniform(keys[0], shape) - 0.5
+
+def step(carry, _):
+    keys, seen, state = carry
+    actions = {agent: jax.nn.sigmoid(seen[agent] @ matrix) for agent in env.agents}
+    keys = jax.vmap(lambda key: jax.random.split(key)[0])(keys)
+    seen, state, reward, _, _ = jax.vmap(env.step_env)(keys, state, actions)
+    return (keys, seen, state), reward[env.agents[0]].mean()
+
+go_on = jax.jit(lambda carry: jax.lax.scan(step, carry, length=steps))
+carry, _ = jax.block_until_ready(go_on((keys, seen, state)))
+start_s = time.process_time()
+carry, reward = jax.block_until_ready(go_on(carry))
+print(time.process_time() - start_s, env.dt)
 """
 
 
@@ -111,21 +141,21 @@ def row(name: str, ticks: int, talks: bool, options: argparse.Namespace) -> Row:
     return Row(name, ticks * STEP_S, lambda: seconds_of(env, options.steps))
 
 
-def vmas_row(options: argparse.Namespace) -> Row:
-    """Return the row of VMAS, in a process of the Python that has it."""
+def other_row(name: str, python: str, option: str, code: str, options: argparse.Namespace) -> Row:
+    """Return the row of another simulator, in a process of the Python that has it."""
     steps = max(1, options.steps // 4)
-    command = [options.vmas, "-c", VMAS, *map(str, (options.runs, options.robots, steps))]
+    command = [python, "-c", code, *map(str, (options.runs, options.robots, steps))]
 
     def measure() -> float:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             said = done.stderr.strip().rpartition("\n")[2]
-            sys.exit(f"learning.py: --vmas: {options.vmas} cannot run VMAS: {said}")
-        seconds, decision_s = map(float, done.stdout.split())
-        assert np.isclose(decision_s, 0.1), "the length of a step of VMAS"
+            sys.exit(f"learning.py: {option}: {python} cannot run {name}: {said}")
+        seconds, decision_s = map(float, done.stdout.split()[-2:])
+        assert np.isclose(decision_s, 0.1), f"the length of a step of {name}"
         return float(seconds * options.steps / steps)
 
-    return Row("VMAS flocking", 0.1, measure)
+    return Row(name, 0.1, measure)
 
 
 def main() -> None:
@@ -135,13 +165,19 @@ def main() -> None:
     parser.add_argument("--robots", type=at_least_one, default=20, help="robots of each run, default %(default)s")
     parser.add_argument("--steps", type=at_least_one, default=100, help="steps of each measurement")
     parser.add_argument("--vmas", metavar="PYTHON", help="a Python that has the package vmas, to measure beside")
+    parser.add_argument("--jaxmarl", metavar="PYTHON", help="a Python that has the package jaxmarl, likewise")
     options = parser.parse_args()
     rows = [
         row("a decision each tick", 1, False, options),
         row("the same with messages", 1, True, options),
         row("a decision each 6 ticks", 6, False, options),
         row("the same with messages", 6, True, options),
-        *([vmas_row(options)] if options.vmas else []),
+        *([other_row("VMAS flocking", options.vmas, "--vmas", VMAS, options)] if options.vmas else []),
+        *(
+            [other_row("JaxMARL simple_spread", options.jaxmarl, "--jaxmarl", JAXMARL, options)]
+            if options.jaxmarl
+            else []
+        ),
     ]
     best = np.min([[one.measure() for one in rows] for _ in range(ROUNDS)], axis=0)
     print(f"{options.runs} runs of {options.robots} robots   step, s  million robot-steps per s  robot-hours per s")
