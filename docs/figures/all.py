@@ -46,6 +46,7 @@ try:
     import replay
     import shadows
     import shapes_of_bodies
+    import sim_to_real
     import swarm
     import views
     import window
@@ -90,6 +91,7 @@ SCRIPTS: dict[str, ModuleType] = {
         replay,
         shadows,
         shapes_of_bodies,
+        sim_to_real,
         swarm,
         views,
         window,

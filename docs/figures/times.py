@@ -24,8 +24,13 @@ from quotes import Quote, paragraph, processor
 STAMP = re.compile(r"^Measured on (\d{4}-\d\d-\d\d) with v(\d+\.\d+\.\d+): (.+)$")
 BENCH = "build/release/bench/bench_"
 PYTHON = sys.executable
-# VMAS is measured beside environments if VMAS_PYTHON is a Python that has it; it is none of our packages.
-VMAS = ("--vmas", os.environ["VMAS_PYTHON"]) if "VMAS_PYTHON" in os.environ else ()
+# Measured beside environments if these are a Python that has them; they are none of our packages.
+OTHERS = tuple(
+    word
+    for option, variable in (("--vmas", "VMAS_PYTHON"), ("--jaxmarl", "JAXMARL_PYTHON"))
+    if variable in os.environ
+    for word in (option, os.environ[variable])
+)
 
 
 def stamp() -> str:
@@ -138,7 +143,7 @@ TIMES = {
     "draw": Times("../bench/README.md: draw", printed(f"{BENCH}draw")),
     "films": Times("pictures.md: films", printed(PYTHON, "bench/films.py")),
     "first_start": Times("../README.md: first_start", first_start),
-    "environments": Times("learning.md: environments", printed(PYTHON, "bench/learning.py", *VMAS)),
+    "environments": Times("learning.md: environments", printed(PYTHON, "bench/learning.py", *OTHERS)),
     "large": Times("../bench/README.md: large", printed(f"{BENCH}large")),
     "light": Times("../bench/README.md: light", printed(f"{BENCH}light")),
     "machine": Times("performance.md: machine", printed(f"{BENCH}machine")),
