@@ -156,7 +156,7 @@ clang_tidy() {
 }
 
 style_checks() {
-    local ruff="$python -m ruff" sources="python tests/python cmake scripts bench docs/figures examples/learning examples/policy tools/gdb"
+    local ruff="$python -m ruff" sources="python tests/python cmake scripts bench docs/figures docs/sim_to_real examples/learning examples/policy tools/gdb"
     check "C++ formatting (clang-format 14)" clang_format || true
     # shellcheck disable=SC2086 # a command with arguments, a list of words
     check "Python style (ruff)" $ruff check --config pyproject.toml $sources || true
