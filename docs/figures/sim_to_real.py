@@ -1,4 +1,4 @@
-"""The way from a film to firmware: runs the commands of docs/sim_to_real.md as they stand there, and keeps what they say.
+"""The way from a film to firmware: runs the commands of docs/sim_to_real.md and keeps what they print.
 
 .venv/bin/python docs/figures/all.py sim_to_real
 """

@@ -50,8 +50,9 @@ std::string polygons_as_yaml(Arena const& arena) {
     return text;
 }
 
-/// Schema metadata: program_version, program_commit, configuration and resolved_configuration (see ConfigurationText), objects (see
-/// object_facts()), and arena_polygons (YAML list of lists of {x, y}, mm). `run.mm_to_pixels` is found here.
+/// Schema metadata: program_version, program_commit, configuration and resolved_configuration (see ConfigurationText),
+/// objects (see object_facts()), and arena_polygons (YAML list of lists of {x, y}, mm). `run.mm_to_pixels` is found
+/// here.
 std::vector<std::pair<std::string, std::string>> run_metadata(Scenario const& scenario, World const& world,
                                                               RunValues run) {
     run.mm_to_pixels = fitted_mm_to_pixels(scenario.view, world.arena);

@@ -1,6 +1,6 @@
 """Learns a policy for `main.c`: CMA-ES finds weights that lead robots to the light, whatever robots the film allows.
 
-    python train.py seeker.so --calibration measured/calibration.json
+    python learn_seeker.py seeker.so --calibration measured/calibration.json
 
 Each candidate drives a swarm of its own, all swarms at once by arrays. policy.npz has the best weights, for `pogosim
 export-policy`, and observations.npz what robots have seen with them, for the ranges of the inputs.
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 try:
     import cma
@@ -23,7 +24,7 @@ try:
 except ImportError as missing:
     if __name__ != "__main__":
         raise
-    print(f"train.py: {missing}; run it with the Python that has Pogosim", file=sys.stderr)
+    print(f"learn_seeker.py: {missing}; run it with the Python that has Pogosim", file=sys.stderr)
     sys.exit(2)
 
 HIDDEN = 6
@@ -97,21 +98,20 @@ def learn(env: SwarmEnv, generations: int, seed: int) -> Floats:
 def save(env: SwarmEnv, weights: Floats, folder: Path) -> float:
     """Write the policy, and observations of a run with it. Returns its light in episodes of their own, 0 to 1."""
     first, bias, second, last_bias = layers_of(weights, len(env.inputs), len(env.outputs))
-    np.savez(
-        folder / "policy.npz",
-        layer0_weights=first.astype(np.float32),
-        layer0_bias=bias.astype(np.float32),
-        layer0_activation="tanh",
-        layer1_weights=second.astype(np.float32),
-        layer1_bias=last_bias.astype(np.float32),
-        layer1_activation="hardtanh",
-        **env.policy_arrays(),
-    )
+    arrays: dict[str, Any] = env.policy_arrays()
+    layers: dict[str, Any] = {
+        "layer0_weights": first.astype(np.float32),
+        "layer0_bias": bias.astype(np.float32),
+        "layer0_activation": "tanh",
+        "layer1_weights": second.astype(np.float32),
+        "layer1_bias": last_bias.astype(np.float32),
+        "layer1_activation": "hardtanh",
+    }
+    np.savez(folder / "policy.npz", **layers, **arrays)
     found = [episodes(env, np.tile(weights, (len(env), 1)), seed=1_000_000 + one) for one in range(3)]
     seen = np.concatenate([one.reshape(-1, len(env.inputs)) for _, one in found])
     random = np.random.default_rng(1)
     kept = np.concatenate([random.choice(seen, KEPT, replace=False), [seen.min(axis=0), seen.max(axis=0)]])
-    arrays = env.policy_arrays()
     counts = np.rint(kept / arrays["input_scale"] + arrays["input_offset"]).astype(np.int32)
     np.savez(folder / "observations.npz", observations=counts)
     return float(np.mean([light.mean() for light, _ in found]))
@@ -130,7 +130,7 @@ def main() -> int:
         with environment(options.program, options.config, options.calibration, CANDIDATES) as env:
             light = save(env, learn(env, options.generations, options.seed), Path())
     except (ToolError, SimulationError) as error:
-        print(f"train.py: {error}", file=sys.stderr)
+        print(f"learn_seeker.py: {error}", file=sys.stderr)
         return 2
     print(f"light in episodes that it was not learnt in: {light:.3f}; written: policy.npz, observations.npz")
     return 0
