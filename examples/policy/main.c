@@ -12,7 +12,7 @@
 #include "policy.h"
 
 typedef struct {
-    policy_value_t inputs[POLICY_INPUT_COUNT];  // sensor counts
+    policy_value_t inputs[POLICY_INPUTS];  // sensor counts
     bool is_right;                              // the self test has passed
     uint8_t forward_dir[3];                     // calibration of this robot: direction bits [right, left, back]
 } USERDATA;
@@ -40,7 +40,7 @@ void user_init(void) {
 }
 
 void user_step(void) {
-    policy_value_t outputs[POLICY_OUTPUT_COUNT];
+    policy_value_t outputs[POLICY_OUTPUTS];
     observe();
     policy_step(mydata->inputs, outputs);
     drive(motorR, mydata->forward_dir[0], outputs[POLICY_OUTPUT_MOTOR_RIGHT]);

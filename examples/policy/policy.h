@@ -7,8 +7,8 @@
 //         if (!policy_self_test()) { pogobot_led_setColor(255, 0, 0); }  // not what was exported
 //     }
 //     void user_step(void) {
-//         policy_value_t const inputs[POLICY_INPUT_COUNT] = {light, ahead, right};
-//         policy_value_t outputs[POLICY_OUTPUT_COUNT];
+//         policy_value_t const inputs[POLICY_INPUTS] = {light, ahead, right};
+//         policy_value_t outputs[POLICY_OUTPUTS];
 //         policy_step(inputs, outputs);
 //         ... outputs[POLICY_OUTPUT_MOTOR_RIGHT] ...
 //     }
@@ -27,13 +27,13 @@ enum {
     POLICY_INPUT_LIGHT,  // light: scaled by (light - 15000) * 6.66667e-05, cut to 5101 to 29253
     POLICY_INPUT_AHEAD,  // ahead: scaled by (ahead - 0) * 0.001, cut to -1843 to 1881
     POLICY_INPUT_RIGHT,  // right: scaled by (right - 0) * 0.001, cut to -1396 to 1417
-    POLICY_INPUT_COUNT
+    POLICY_INPUTS
 };
 // Outputs:
 enum {
     POLICY_OUTPUT_MOTOR_RIGHT,  // motor_right: value * 1023 + 0, within 2.32 of the policy in floats
     POLICY_OUTPUT_MOTOR_LEFT,   // motor_left: value * 1023 + 0, within 3.54 of the policy in floats
-    POLICY_OUTPUT_COUNT
+    POLICY_OUTPUTS
 };
 
 #define POLICY_CONSTANT_BYTES 763  // weights, biases, tables and test vector, in flash memory
@@ -212,7 +212,7 @@ static inline void policy_step(policy_value_t const inputs[], policy_value_t out
 
 // Whether this program and this processor give the outputs that were there when the policy was exported.
 static inline bool policy_self_test(void) {
-    policy_value_t outputs[POLICY_OUTPUT_COUNT];
+    policy_value_t outputs[POLICY_OUTPUTS];
     for (uint16_t step = 0; step < 4; step++) {
         policy_step(policy_test_inputs[step], outputs);
         for (uint16_t i = 0; i < 2; i++) {

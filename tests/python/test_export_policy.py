@@ -182,7 +182,7 @@ def test_host_moves_robots_as_a_program_does_that_is_a_tick_late(tmp_path: Path)
     With noise, the host's robots draw other numbers, since they read all their sensors.
     """
     text = (EXAMPLE / "main.c").read_text()
-    text = text.replace("typedef struct {", "typedef struct {\n    policy_value_t last[POLICY_OUTPUT_COUNT];", 1)
+    text = text.replace("typedef struct {", "typedef struct {\n    policy_value_t last[POLICY_OUTPUTS];", 1)
     text = text.replace(
         "    observe();\n    policy_step(mydata->inputs, outputs);\n",
         "    memcpy(outputs, mydata->last, sizeof(outputs));\n"

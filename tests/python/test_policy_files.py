@@ -106,6 +106,12 @@ def test_arrays_may_be_left_out(tmp_path: Path) -> None:
         ({"output_names": ["a", "A"]}, ": output_names has 'A' twice, in capitals; expected different names"),
         ({"output_names": [1, 2]}, ": output_names: expected texts in a row, found an array of int64 of shape (2,)"),
         ({"input_scale": [1, 0, 1]}, ": input_scale[1] is 0; leave that input out instead"),
+        (
+            {"input_scale": [1, 1e-44, 1]},
+            ": input_scale[1] is 9.80909e-45 and input_offset[1] 0: inputs that are scaled to -1 or 1 reach 1.02e+44; "
+            "expected floats of 32 bits, 3.4e+38 at most",
+        ),
+        ({"input_scale": 1e-38, "input_offset": -3e38}, ": input_scale[0] is 1e-38 and input_offset[0] -3e+38: inputs"),
         ({"input_offset": [1, 0]}, ": input_offset has the shape (2,); expected (3,), or one number for all"),
         ({"output_scale": np.inf}, ": output_scale: expected a finite number of 32 bits, found inf"),
         ({"input_low": 3, "input_high": 3}, ": input 0 ranges from 3 to 3; expected two finite numbers"),
@@ -326,6 +332,8 @@ def test_scaling_with_layers_or_of_another_policy_is_refused(tmp_path: Path) -> 
         ({"layer0_weights": np.ones((2, 2))}, "has an array 'layer0_weights'; expected input_names, "),
         ({"input_scale": [1, 2]}, r"input_scale has the shape \(2,\); expected \(3,\)"),
         ({"input_scale": 0}, r"input_scale\[0\] is 0"),
+        ({"input_scale": 1e-44}, r"s\.npz: input_scale\[0\] is 9\.80909e-45 and input_offset\[0\] 0: inputs that are "),
+        ({"input_scale": 5e-36}, r"s\.npz: with the scaling of the policy: input_scale\[0\] is 5e-39 and input_offset"),
     ):
         np.savez(tmp_path / "s.npz", **arrays)
         with pytest.raises(PolicyError, match=said):
@@ -350,6 +358,7 @@ def test_observations_are_read_from_arrays_and_columns(tmp_path: Path) -> None:
         (np.ones((4, 2)), r"expected observations of shape \(..., 3\), found an array of shape \(4, 2\)"),
         (np.ones((0, 3)), "has no observations"),
         ([[1, 2, 3], [1, np.inf, 3]], "input x1 is inf in observation 1; expected finite numbers"),
+        ([[1, 2, 3], [1, 2, 1e39]], r"input x2 is 1e\+39 in observation 1; expected finite numbers of 32 bits"),
         (np.full((2, 3), "a"), "expected numbers, found an array of <U1"),
     ],
 )

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from firmwares import firmware_in, project_of, run_firmware
-from pogosim.policy import Policy, PolicyError
+from pogosim.policy import Dense, Policy, PolicyError, network_of
 from pogosim.policy.c_header import header_of
 from pogosim.policy.policy import NUMBERS
 from pogosim.policy.test_vector import vector_of
@@ -32,7 +32,7 @@ ROWS = 40
 
 READER = """
 static int read_{prefix}(FILE* file) {{
-    {prefix}_value_t inputs[{inputs}], outputs[{upper}_OUTPUT_COUNT];
+    {prefix}_value_t inputs[{inputs}], outputs[{upper}_OUTPUTS];
     {reset}
     if (!{prefix}_self_test()) {{ return 1; }}
     for (int row = 0; row < {rows}; row++) {{
@@ -180,6 +180,28 @@ def test_sizes_in_the_header_are_those_of_its_arrays(tmp_path: Path) -> None:
     listed = subprocess.run(["nm", "-S", "main.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     sizes = [int(line.split()[1], 16) for line in listed.splitlines() if line.split()[-2] == "r"]
     assert sum(sizes) == header.constant_bytes
+
+
+def test_inputs_and_outputs_may_have_any_name_in_c(tmp_path: Path) -> None:
+    layer = Dense(np.ones((5, 5)), np.zeros(5), "tanh")
+    names = ["count", "Counts", "inputs", "S", "while"]
+    policy = Policy(network_of([layer], input_names=names, output_names=names, input_low=0, input_high=9))
+    (tmp_path / "policy.h").write_text(header_of(policy, vector_of(policy, None), "policy", "a").text)
+    (tmp_path / "main.c").write_text(
+        '#include "policy.h"\nint main(void) { return POLICY_INPUT_COUNT + POLICY_OUTPUT_WHILE + POLICY_OUTPUTS; }\n'
+    )
+    subprocess.run(["cc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "main"], check=False).returncode == 0 + 4 + 5
+
+
+@pytest.mark.parametrize("activation", ["identity", "relu"])
+def test_policy_whose_results_overflow_is_refused(activation: str) -> None:
+    """Without a warning of NumPy: pytest would make it an error."""
+    layers = [Dense(np.full((3, 3), 3e38), np.zeros(3), activation) for _ in range(2)]
+    policy = Policy(network_of(layers, output_names=["left", "right", "led"]))
+    said = r"the output left is (inf|-inf|nan) for the inputs [^;]*: numbers overflow on the way; expected weights and"
+    with pytest.raises(PolicyError, match=said):
+        vector_of(policy, np.array([[1, 2, 3], [4, 5, 6]]))
 
 
 @pytest.mark.parametrize("name", ["", "a b", "1a", "int", "a_", "x" * 64, "é"])

@@ -266,11 +266,11 @@ def functions_of(parts: Parts, is_fixed: bool) -> list[str]:
 
 
 def enumeration(names: tuple[str, ...], what: str, comments: list[str]) -> list[str]:
-    """Return the places of inputs or outputs as an enum."""
+    """Return the places of inputs or outputs as an enum, and how many there are: a name that no place can have."""
     rows = [f"    @@{what}_{name},".upper() for name in names]
     width = max(map(len, rows))
     made = [f"{row:{width}}  // {comment}" for row, comment in zip(rows, comments, strict=True)]
-    return ["enum {", *made, f"    @@{what}_COUNT".upper(), "};"]
+    return ["enum {", *made, f"    @@{what}S".upper(), "};"]
 
 
 def comments_of_inputs(policy: Policy) -> list[str]:
@@ -335,12 +335,12 @@ def introduction(policy: Policy, prefix: str, source: str) -> list[str]:
         *(
             f"//         {line}"
             for line in textwrap.wrap(
-                f"{prefix}_value_t const inputs[{upper}_INPUT_COUNT] = {{{values}}};",
+                f"{prefix}_value_t const inputs[{upper}_INPUTS] = {{{values}}};",
                 WIDTH - 12,
                 subsequent_indent="    ",
             )
         ),
-        f"//         {prefix}_value_t outputs[{upper}_OUTPUT_COUNT];",
+        f"//         {prefix}_value_t outputs[{upper}_OUTPUTS];",
         f"//         {prefix}_step({state}inputs, outputs);",
         f"//         ... outputs[{upper}_OUTPUT_{network.output_names[0].upper()}] ...",
         "//     }",
@@ -369,7 +369,7 @@ def self_test(policy: Policy, vector: TestVector) -> list[str]:
     return [
         "// Whether this program and this processor give the outputs that were there when the policy was exported.",
         "static inline bool @self_test(void) {",
-        "    @value_t outputs[@@OUTPUT_COUNT];",
+        "    @value_t outputs[@@OUTPUTS];",
         *state,
         f"    for (uint16_t step = 0; step < {steps}; step++) {{",
         f"        @step({argument}@test_inputs[step], outputs);",

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pogosim.errors import DamagedFileError
 from pogosim.policy.errors import PolicyError
-from pogosim.policy.network import Network
+from pogosim.policy.network import MOST_FLOAT, Network
 from pogosim.policy.npz_file import WRONG_FILE, read_arrays
 
 OBSERVATIONS = "observations"  # the array of a .npz file that has several
@@ -77,10 +77,11 @@ def checked_observations(values: npt.ArrayLike, network: Network, place: str) ->
     rows = found.reshape(-1, network.inputs).astype(np.float64)
     if not len(rows):
         raise PolicyError(f"{place} has no observations; expected those of a run")
-    if not np.isfinite(rows).all():
-        row, index = (int(one) for one in np.argwhere(~np.isfinite(rows))[0])
+    is_float = np.abs(rows) <= MOST_FLOAT
+    if not is_float.all():
+        row, index = (int(one) for one in np.argwhere(~is_float)[0])
         what = f"input {network.input_names[index]} is {rows[row, index]}"
-        raise PolicyError(f"{place}: {what} in observation {row}; expected finite numbers")
+        raise PolicyError(f"{place}: {what} in observation {row}; expected finite numbers of 32 bits")
     return rows
 
 

@@ -25,6 +25,7 @@ Numbers = npt.NDArray[Any]  # of layers: floats of 32 bits once they are checked
 
 ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")  # hardtanh: cut to -1 to 1
 MOST_UNITS = 4096  # of a layer
+MOST_FLOAT = float(np.finfo(np.float32).max)
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")  # a name in C
 
 
@@ -194,14 +195,14 @@ def network_of(
         checked.append(checked_layer(layer, before, f"{place}: layer {number}"))
         before = checked[-1].units
     inputs, outputs = checked[0].weights.shape[1], checked[-1].units
+    offset = vector(input_offset, inputs, f"{place}: input_offset")
     scale = vector(input_scale, inputs, f"{place}: input_scale")
-    if not scale.all():
-        raise PolicyError(f"{place}: input_scale[{int(np.argmin(np.abs(scale)))}] is 0; leave that input out instead")
+    check_input_scaling(offset, scale, place)
     return Network(
         tuple(checked),
         names(input_names, inputs, "input", place),
         names(output_names, outputs, "output", place),
-        vector(input_offset, inputs, f"{place}: input_offset"),
+        offset,
         scale,
         vector(output_scale, outputs, f"{place}: output_scale"),
         vector(output_offset, outputs, f"{place}: output_offset"),
@@ -289,6 +290,23 @@ def vector(values: npt.ArrayLike, length: int, place: str) -> Floats:
     if found.shape not in ((), (length,)):
         raise PolicyError(f"{place} has the shape {found.shape}; expected ({length},), or one number for all")
     return np.array(np.broadcast_to(found, (length,)))
+
+
+def check_input_scaling(offset: Floats, scale: Floats, place: str) -> None:
+    """Check that there are inputs which are scaled to -1 and 1. Shapes (inputs,).
+
+    Raises:
+        PolicyError: A scale is 0, or so small that these inputs are no floats of 32 bits.
+    """
+    if not scale.all():
+        raise PolicyError(f"{place}: input_scale[{int(np.argmin(np.abs(scale)))}] is 0; leave that input out instead")
+    largest = np.abs(offset.astype(float)) + 1 / np.abs(scale.astype(float))
+    wrong = int(np.argmax(largest))
+    if largest[wrong] > MOST_FLOAT:
+        raise PolicyError(
+            f"{place}: input_scale[{wrong}] is {scale[wrong]:g} and input_offset[{wrong}] {offset[wrong]:g}: inputs "
+            f"that are scaled to -1 or 1 reach {largest[wrong]:.3g}; expected floats of 32 bits, {MOST_FLOAT:.3g} at most"
+        )
 
 
 def names(given: Sequence[str] | None, count: int, what: str, place: str) -> tuple[str, ...]:

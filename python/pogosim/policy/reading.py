@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pogosim.policy.errors import PolicyError
-from pogosim.policy.network import Network, checked_range, names, vector
+from pogosim.policy.network import Network, check_input_scaling, checked_range, names, vector
 from pogosim.policy.npz_file import SCALING, read_arrays, read_npz, scaling_in
 
 ENDINGS = (".npz", ".onnx", ".pt", ".pth")
@@ -62,8 +62,7 @@ def with_scaling(network: Network, file: Path) -> Network:
     scale = vector(given.get("input_scale", 1.0), inputs, f"{place}: input_scale").astype(float)
     output_scale = vector(given.get("output_scale", 1.0), outputs, f"{place}: output_scale").astype(float)
     output_offset = vector(given.get("output_offset", 0.0), outputs, f"{place}: output_offset").astype(float)
-    if not scale.all():
-        raise PolicyError(f"{place}: input_scale[{int(np.argmin(np.abs(scale)))}] is 0; leave that input out instead")
+    check_input_scaling(offset, scale, place)
     scaled = replace(
         network,
         input_offset=vector(offset + network.input_offset / scale, inputs, f"{place}: input_offset"),
@@ -71,6 +70,7 @@ def with_scaling(network: Network, file: Path) -> Network:
         output_scale=vector(network.output_scale * output_scale, outputs, f"{place}: output_scale"),
         output_offset=vector(network.output_offset * output_scale + output_offset, outputs, f"{place}: output_offset"),
     )
+    check_input_scaling(scaled.input_offset, scaled.input_scale, f"{place}: with the scaling of the policy")
     if "input_names" in given:
         scaled = replace(scaled, input_names=names(given["input_names"], inputs, "input", place))
     if "output_names" in given:
@@ -78,5 +78,6 @@ def with_scaling(network: Network, file: Path) -> Network:
     if "input_low" in given or "input_high" in given:
         ranges = checked_range(given.get("input_low", np.nan), given.get("input_high", np.nan), inputs, place)
     else:
-        ranges = np.sort(network.input_range / scale[:, None] + offset[:, None], axis=1).astype(np.float32)
+        ends = np.sort(network.input_range / scale[:, None] + offset[:, None], axis=1)
+        ranges = checked_range(ends[:, 0], ends[:, 1], inputs, place)
     return replace(scaled, input_range=ranges)
