@@ -108,7 +108,7 @@ def test_arrays_may_be_left_out(tmp_path: Path) -> None:
         ({"input_scale": [1, 0, 1]}, ": input_scale[1] is 0; leave that input out instead"),
         (
             {"input_scale": [1, 1e-44, 1]},
-            ": input_scale[1] is 9.80909e-45 and input_offset[1] 0: inputs that are scaled to -1 or 1 reach 1.02e+44; "
+            ": input_scale[1] is 9.80909e-45 and input_offset[1] 0: inputs scaled to -1 or 1 reach 1.02e+44; "
             "expected floats of 32 bits, 3.4e+38 at most",
         ),
         ({"input_scale": 1e-38, "input_offset": -3e38}, ": input_scale[0] is 1e-38 and input_offset[0] -3e+38: inputs"),
@@ -278,6 +278,38 @@ def test_numbers_around_the_layers_scale_inputs_and_outputs(tmp_path: Path) -> N
             [("MatMul", ["x", "w"], {}), ("Mul", ["0", "two"], {}), ("MatMul", ["1", "v"], {})],
             r"MatMul is behind numbers that scale the values of a layer",
         ),
+        (
+            [("MatMul", ["x", "w"], {}), ("Add", ["0", "five"], {})],
+            r"Add has 5 operands for 2 values; expected as many, or",
+        ),
+        (
+            [("Mul", ["x", "five"], {}), ("Mul", ["0", "b2"], {}), ("MatMul", ["1", "w"], {})],
+            r"Mul has 2 operands for 5 values; expected as many, or one",
+        ),
+        (
+            [("Mul", ["x", "five"], {}), ("MatMul", ["0", "w"], {})],
+            r"MatMul has weights for 3 values; what is before it gives 5",
+        ),
+        ([("Gemm", ["x", "w", "five"], {})], r"Gemm has 5 biases for 2 values; expected as many, or one"),
+        ([("Gemm", ["x", "w", "none"], {})], r"Gemm has 0 biases for 2 values"),
+        ([("MatMul", ["x", "w"], {}), ("Mul", ["0", "none"], {})], r"Mul has 0 operands for 2 values"),
+        ([("Mul", ["x", "none"], {}), ("MatMul", ["0", "w"], {})], r"Mul has no operands; expected numbers"),
+        (
+            [("GRU", ["x", "r3", "w3"], {"hidden_size": 2, "linear_before_reset": 1})],
+            r"GRU has weights of shapes \(1, 6, 2\) and \(1, 6, 3\); expected \(1, 3 units, inputs\) and",
+        ),
+        (
+            [("GRU", ["x", "w3", "r3", "five"], {"hidden_size": 2, "linear_before_reset": 1})],
+            r"GRU has 5 biases for 12 values",
+        ),
+        (
+            [("Neg", ["w"], {}), ("MatMul", ["x", "0"], {})],
+            r"Neg is not on the way from 'x', and computes no size or st",
+        ),
+        (
+            [("MatMul", ["square", "x"], {})],
+            r"MatMul has the vector as another operand than the first one; expected wei",
+        ),
         ([("Identity", ["x"], {})], r"has no layers; expected one at least"),
         ([("MatMul", ["x", "w"], {}), ("Add", ["0", "0"], {})], r"Add has operands that are not constant"),
         ([("GRU", ["x", "w3", "r3"], {"hidden_size": 2})], r"GRU has linear_before_reset 0; expected 1, as in PyTorch"),
@@ -297,8 +329,33 @@ def test_graph_that_is_no_policy_is_refused_by_the_name_of_its_operator(
         for place, (kind, inputs, attributes) in enumerate(nodes)
     ]
     constants: dict[str, Any] = {"w": WEIGHTS, "v": np.eye(2), "w3": np.ones((1, 6, 3)), "r3": np.ones((1, 6, 2))}
+    constants |= {"five": np.arange(1, 6), "b2": [1, 2], "none": [], "square": np.eye(3)}
     file = onnx_file(tmp_path, *made, low=-1, high=1, two=2, zero=0, **constants)
     assert re.search(said, refused(file))
+
+
+def test_what_the_output_does_not_depend_on_is_not_looked_at(tmp_path: Path) -> None:
+    """Neither the value of an actor and critic, nor a loop of 2^40 steps that nothing takes from."""
+    of_loop = [helper.make_tensor_value_info(name, kind, []) for name, kind in (("i", 7), ("c", 9), ("v", 1))]
+    body = helper.make_graph(
+        [helper.make_node("Identity", ["c"], ["d"]), helper.make_node("Identity", ["v"], ["u"])],
+        "body",
+        of_loop,
+        [helper.make_tensor_value_info("d", 9, []), helper.make_tensor_value_info("u", 1, [])],
+    )
+    file = onnx_file(
+        tmp_path,
+        helper.make_node("Constant", [], ["steps"], value=numpy_helper.from_array(np.array(2**40))),
+        helper.make_node("Constant", [], ["goes_on"], value=numpy_helper.from_array(np.array(True))),
+        helper.make_node("Loop", ["steps", "goes_on", "low"], ["unused"], body=body),
+        helper.make_node("MatMul", ["x", "v"], ["of_critic"]),
+        helper.make_node("Softmax", ["of_critic"], ["value"]),
+        helper.make_node("MatMul", ["x", "w"], ["y"]),
+        w=WEIGHTS,
+        v=np.ones((3, 1)),
+        low=-1,
+    )
+    assert read_onnx(file).describe() == "3 inputs, 2 identity"
 
 
 def test_package_onnx_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -332,7 +389,7 @@ def test_scaling_with_layers_or_of_another_policy_is_refused(tmp_path: Path) -> 
         ({"layer0_weights": np.ones((2, 2))}, "has an array 'layer0_weights'; expected input_names, "),
         ({"input_scale": [1, 2]}, r"input_scale has the shape \(2,\); expected \(3,\)"),
         ({"input_scale": 0}, r"input_scale\[0\] is 0"),
-        ({"input_scale": 1e-44}, r"s\.npz: input_scale\[0\] is 9\.80909e-45 and input_offset\[0\] 0: inputs that are "),
+        ({"input_scale": 1e-44}, r"s\.npz: input_scale\[0\] is 9\.80909e-45 and input_offset\[0\] 0: inputs scaled "),
         ({"input_scale": 5e-36}, r"s\.npz: with the scaling of the policy: input_scale\[0\] is 5e-39 and input_offset"),
     ):
         np.savez(tmp_path / "s.npz", **arrays)

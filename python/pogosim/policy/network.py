@@ -305,7 +305,7 @@ def check_input_scaling(offset: Floats, scale: Floats, place: str) -> None:
     if largest[wrong] > MOST_FLOAT:
         raise PolicyError(
             f"{place}: input_scale[{wrong}] is {scale[wrong]:g} and input_offset[{wrong}] {offset[wrong]:g}: inputs "
-            f"that are scaled to -1 or 1 reach {largest[wrong]:.3g}; expected floats of 32 bits, {MOST_FLOAT:.3g} at most"
+            f"scaled to -1 or 1 reach {largest[wrong]:.3g}; expected floats of 32 bits, {MOST_FLOAT:.2g} at most"
         )
 
 

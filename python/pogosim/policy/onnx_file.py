@@ -26,6 +26,8 @@ ACTIVATION = {"Tanh": "tanh", "Sigmoid": "sigmoid", "Relu": "relu"}
 # What does not change the numbers of a vector; the comparison at the end finds those that do.
 SHAPE_ONLY = ("Identity", "Flatten", "Reshape", "Squeeze", "Unsqueeze", "Transpose", "Cast")
 ELEMENTWISE = ("Add", "Sub", "Mul", "Div")
+# Sizes of vectors, and what recurrent layers begin with; the comparison at the end finds states that are not 0.
+BESIDE = ("Constant", "ConstantOfShape", "Shape", "Gather", "Slice", "Concat", "Expand", *SHAPE_ONLY)
 OPERATORS = ("Gemm", "MatMul", *ELEMENTWISE, *ACTIVATION, "Clip", "RNN", "GRU", *SHAPE_ONLY)
 MOST_BYTES = 1 << 28
 COMPARED = 8  # random inputs
@@ -70,6 +72,29 @@ class Chain:
             raise self.refused(node, f"has {what} that are not constant in the file; expected numbers")
         return np.asarray(self.constants[name])
 
+    def row(self, node: NodeProto, place: int, what: str, size: int | None) -> Floats:
+        """Return a constant input of a node, for a vector of that size (None: any). Shape (), if it is one number.
+
+        Raises:
+            PolicyError: It is no constant, or of another size.
+        """
+        found = self.constant(node, place, what).astype(float).reshape(-1)
+        if found.size == 1:
+            return found.reshape(())
+        if size is not None and found.size != size:
+            raise self.refused(node, f"has {found.size} {what} for {size} values; expected as many, or one")
+        if not found.size:
+            raise self.refused(node, f"has no {what}; expected numbers")
+        return found
+
+    @property
+    def width(self) -> int | None:
+        """Size of the vector that has been followed so far; None: unknown."""
+        if self.layers:
+            return self.layers[-1].units
+        sizes = [part.size for part in self.before if part.ndim]
+        return sizes[0] if sizes else None
+
     def add(self, layer: Layer, node: NodeProto) -> None:
         """Add a layer.
 
@@ -80,6 +105,8 @@ class Chain:
             raise self.refused(
                 node, "is behind numbers that scale the values of a layer; expected that of inputs alone"
             )
+        if self.width not in (None, columns := layer.weights.shape[1]):
+            raise self.refused(node, f"has weights for {columns} values; what is before it gives {self.width}")
         self.layers.append(layer)
         self.is_open = layer.kind == "dense"
 
@@ -99,8 +126,7 @@ def attributes(node: NodeProto) -> dict[str, Any]:
 def elementwise(chain: Chain, node: NodeProto, vector: str) -> None:
     """Add, subtract, multiply by or divide by numbers: a bias, or the scale of inputs or outputs."""
     place = list(node.input).index(vector)
-    number = chain.constant(node, 1 - place, "operands").astype(float)
-    number = number.reshape(-1) if number.size > 1 else number.reshape(())
+    number = chain.row(node, 1 - place, "operands", chain.width)
     if place == 1 and node.op_type in ("Sub", "Div"):
         raise chain.refused(node, "has the vector as its second operand; expected it as the first one")
     if node.op_type == "Div" and not number.all():
@@ -153,7 +179,7 @@ def dense(chain: Chain, node: NodeProto) -> None:
     rows = weights if is_transposed else weights.T
     bias = np.zeros(len(rows))
     if node.op_type == "Gemm" and len(node.input) > 2 and node.input[2]:
-        bias = np.broadcast_to(chain.constant(node, 2, "biases").reshape(-1), bias.shape)
+        bias = np.broadcast_to(chain.row(node, 2, "biases", len(rows)), bias.shape)
     chain.add(Dense(rows, bias, "identity"), node)
 
 
@@ -169,16 +195,20 @@ def recurrent(chain: Chain, node: NodeProto) -> None:
     if node.op_type == "GRU" and given.get("linear_before_reset", 0) != 1:
         raise chain.refused(node, "has linear_before_reset 0; expected 1, as in PyTorch")
     weights, matrix = chain.constant(node, 1, "weights"), chain.constant(node, 2, "recurrent weights")
-    if weights.ndim != 3 or matrix.ndim != 3 or len(weights) != 1 or matrix.shape[1] != gates * matrix.shape[2]:
-        raise chain.refused(node, f"has weights of shapes {weights.shape} and {matrix.shape}")
-    rows = matrix.shape[1]
+    units = matrix.shape[-1] if matrix.ndim else 0
+    rows = gates * units
+    if weights.ndim != 3 or weights.shape[:2] != (1, rows) or matrix.shape != (1, rows, units) or not rows:
+        raise chain.refused(
+            node,
+            f"has weights of shapes {weights.shape} and {matrix.shape}; expected (1, {gates} units, inputs) and "
+            f"(1, {gates} units, units)",
+        )
     both = np.zeros(2 * rows)
     if len(node.input) > 3 and node.input[3]:
-        both = np.broadcast_to(chain.constant(node, 3, "biases").reshape(-1), both.shape)
+        both = np.broadcast_to(chain.row(node, 3, "biases", 2 * rows), both.shape)
     if node.op_type == "RNN":
         chain.add(Elman(weights[0], matrix[0], both[:rows] + both[rows:], "tanh"), node)
         return
-    units = rows // 3
     order = np.r_[units : 2 * units, :units, 2 * units : rows]  # ONNX: keep, reset, new
     chain.add(Gru(weights[0][order], matrix[0][order], both[:rows][order], both[rows:][order]), node)
 
@@ -191,10 +221,10 @@ def follow(chain: Chain, node: NodeProto, vector: str) -> None:
     """
     if node.op_type in ELEMENTWISE:
         elementwise(chain, node, vector)
-    elif node.op_type in ("Gemm", "MatMul") and node.input[0] == vector:
-        dense(chain, node)
-    elif node.op_type in ("RNN", "GRU") and node.input[0] == vector:
-        recurrent(chain, node)
+    elif node.op_type in ("Gemm", "MatMul", "RNN", "GRU"):
+        if node.input[0] != vector:
+            raise chain.refused(node, "has the vector as another operand than the first one; expected weights there")
+        (dense if node.op_type in ("Gemm", "MatMul") else recurrent)(chain, node)
     elif node.op_type in (*ACTIVATION, "Clip"):
         activate(chain, node)
     elif node.op_type not in SHAPE_ONLY:
@@ -222,12 +252,26 @@ def chain_of(graph: GraphProto, file: Path) -> Chain:
             continue
         taken = [name for name in node.input if name in vectors]
         if not taken or node.op_type == "Shape":
-            continue  # sizes, and what recurrent layers begin with
+            if node.op_type not in BESIDE:
+                raise chain.refused(node, f"is not on the way from {inputs[0]!r}, and computes no size or state")
+            continue
         follow(chain, node, taken[0])
         vectors = {name for name in node.output if name}
     if graph.output[0].name not in vectors:
         raise PolicyError(f"{file}: its output {graph.output[0].name!r} is not the end of a chain of layers")
     return chain
+
+
+def keep_what_is_needed(graph: GraphProto) -> None:
+    """Leave out what the first output does not depend on, such as the value of an actor and critic."""
+    needed = {one.name for one in graph.output[:1]}
+    kept: list[NodeProto] = []
+    for node in reversed(graph.node):  # each is behind those that it takes from: the checker has looked
+        if not needed.isdisjoint(node.output):
+            needed.update(node.input)
+            kept.insert(0, node)
+    del graph.node[:], graph.output[1:]
+    graph.node.extend(kept)
 
 
 def read_onnx(file: Path) -> Network:
@@ -252,15 +296,19 @@ def read_onnx(file: Path) -> Network:
         raise
     except Exception as error:  # of protobuf, of the checker, and others
         raise PolicyError(f"{file} is damaged, or no ONNX file: {short(error)}") from None
-    chain = chain_of(model.graph, file)
+    keep_what_is_needed(model.graph)
+    with np.errstate(all="ignore"):  # network_of() refuses what is not finite
+        chain = chain_of(model.graph, file)
     if not chain.layers:
         raise PolicyError(f"{file} has no layers; expected one at least")
     (factor, addend), (output_factor, output_addend) = chain.before, chain.behind
     if not factor.all():
         raise PolicyError(f"{file} multiplies an input by 0; leave that input out instead")
+    with np.errstate(all="ignore"):
+        offset = -addend / factor
     network = network_of(
         chain.layers,
-        input_offset=-addend / factor,
+        input_offset=offset,
         input_scale=factor,
         output_scale=output_factor,
         output_offset=output_addend,
@@ -305,7 +353,8 @@ def compare(network: Network, model: ModelProto, file: Path) -> None:
 
     rows = np.random.default_rng(1).uniform(-1, 1, (COMPARED, network.inputs)) / network.input_scale
     observed = (rows + network.input_offset).astype(np.float32)
-    found, _ = float_arithmetic.step(network, observed, np.zeros((COMPARED, network.state_units), np.float32))
+    with np.errstate(over="ignore", invalid="ignore"):
+        found, _ = float_arithmetic.step(network, observed, np.zeros((COMPARED, network.state_units), np.float32))
     for row, ours in zip(observed, found, strict=True):
         inputs = fed(model, network, row, file)
         try:

@@ -54,7 +54,7 @@ def vector_of(policy: Policy, observations: npt.NDArray[np.float64] | None) -> T
         step, index = (int(one) for one in np.argwhere(~np.isfinite(outputs))[0])
         name, given = policy.network.output_names[index], ", ".join(f"{value:g}" for value in inputs[step])
         raise PolicyError(
-            f"the output {name} is {outputs[step, index]} for the inputs {given}: numbers overflow on the way; expected "
-            "weights and scales whose results are floats of 32 bits"
+            f"the output {name} is {outputs[step, index]} for the inputs {given}: numbers overflow on the way; "
+            "expected weights and scales whose results are floats of 32 bits"
         )
     return TestVector(inputs, outputs)
