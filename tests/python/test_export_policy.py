@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ import yaml
 from in_process import pogosim as command
 from in_process import refusal
 from pogosim.command import export_policy
-from pogosim.policy import Policy
+from pogosim.policy import Dense, Policy, network_of
 from pogosim.policy.network import ACTIVATIONS
 from pogosim.policy.policy import NUMBERS
 from project import CLEAN
@@ -76,6 +77,32 @@ def test_policy_that_no_robot_has_room_for_is_warned_of(tmp_path: Path) -> None:
     assert result.code == 0
     assert result.errors == "pogosim export-policy: warning: the policy does not fit into the 128 KiB of a robot\n"
     assert "cycles           not measured: --no-cycles" in result.output
+
+
+@pytest.mark.parametrize("numbers", NUMBERS)
+def test_policy_far_too_large_for_robots_is_refused_before_it_takes_long(numbers: str, tmp_path: Path) -> None:
+    Policy(network_of([Dense(np.ones((4096, 4096)), np.zeros(4096), "tanh")])).save(tmp_path / "large.npz")
+    line = refusal(command(tmp_path, "export-policy", "large.npz", "-o", "a.h", "--numbers", numbers))
+    assert line == (
+        "pogosim export-policy: the policy has 16777216 weights; expected 262144 at most, which are already more than "
+        "the 128 KiB of a robot: train a smaller network"
+    )
+
+
+def test_pipes_and_devices_are_refused(tmp_path: Path) -> None:
+    Policy(random_network(ALL["plain"])).save(tmp_path / "a.npz")
+    for name in ("f.npz", "f.pt", "f.onnx", "f.npy", "f.csv"):
+        os.mkfifo(tmp_path / name)
+    options = ("-o", "a.h", "--no-cycles", "--numbers", "int8")
+    for policy, name, more in (
+        *((name, name, ()) for name in ("f.npz", "f.pt", "f.onnx")),
+        *(("a.npz", name, ("--calibration", name)) for name in ("f.npz", "f.npy", "f.csv", "/dev/null")),
+        ("a.npz", "f.npz", ("--scaling", "f.npz")),
+    ):
+        line = refusal(command(tmp_path, "export-policy", policy, *more, *options))
+        assert line == (
+            f"pogosim export-policy: {name} is not a file, but a pipe, a socket or a device; expected a file"
+        )
 
 
 def test_without_the_robots_compiler_cycles_are_not_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

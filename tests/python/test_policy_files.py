@@ -6,6 +6,7 @@ import builtins
 import pickle
 import re
 import sys
+import tracemalloc
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -137,6 +138,13 @@ def test_file_without_layers_and_other_files_are_refused(tmp_path: Path) -> None
     assert "does not end in .npz, .onnx, .pt or .pth" in refused(tmp_path / "a.txt")
 
 
+def test_two_arrays_of_one_name_are_refused(tmp_path: Path) -> None:
+    Policy(random_network(ALL["plain"])).save(tmp_path / "a.npz")
+    with zipfile.ZipFile(tmp_path / "a.npz", "a") as archive, pytest.warns(UserWarning, match="Duplicate name"):
+        archive.writestr("layer0_bias.npy", archive.read("layer0_bias.npy"))
+    assert refused(tmp_path / "a.npz") == " has two arrays 'layer0_bias'; expected one of each name"
+
+
 def mutations(content: bytes, count: int) -> list[bytes]:
     """Return a file with some bytes changed, cut, or doubled."""
     random = np.random.default_rng(3)
@@ -215,6 +223,42 @@ def test_nothing_in_a_pt_file_is_executed(content: object, tmp_path: Path) -> No
     with zipfile.ZipFile(tmp_path / "a.pt", "w") as archive:
         archive.writestr("a/data.pkl", pickle.dumps(content))
     assert re.match(": it holds builtins|: it is no state_dict|: it holds ", refused(tmp_path / "a.pt"))
+
+
+def tensor_in(shape: tuple[int, ...], strides: tuple[int, ...]) -> bytes:
+    """Return a pickle, as PyTorch writes it, of a state_dict whose weights are in a stored array of 6 numbers."""
+
+    def numbers(values: tuple[int, ...]) -> bytes:
+        return b"(" + b"".join(f"I{value}\n".encode() for value in values) + b"t"
+
+    storage = b"(V" + b"storage\nctorch\nFloatStorage\nV0\nVcpu\nI6\ntQ"
+    tensor = b"ctorch._utils\n_rebuild_tensor_v2\n(" + storage + b"I0\n" + numbers(shape) + numbers(strides) + b"tR"
+    return b"\x80\x02(d" + b"V0.weight\n" + tensor + b"s."
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (tensor_in((3, 2), (2, 1)), ""),
+        (tensor_in((2, 3), (1, 2)), ""),
+        (tensor_in((16000, 16000), (0, 0)), " is damaged: a tensor is larger than its data"),
+        (tensor_in((3, 3), (2, 1)), " is damaged: a tensor is larger than its data"),
+        (b"\x80\x02Nr\x00\x00\x00\x08.", " is damaged: its pickle has 9 bytes and an object numbered 134217728"),
+    ],
+)
+def test_small_pt_file_takes_little_memory(content: bytes, said: str, tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "a.pt", "w") as archive:
+        archive.writestr("a/data.pkl", content)
+        archive.writestr("a/data/0", np.arange(6, dtype=np.float32).tobytes())
+    tracemalloc.start()
+    try:
+        if said:
+            assert refused(tmp_path / "a.pt").startswith(said)
+        else:
+            assert read_pt(tmp_path / "a.pt", None, "identity").layers[0].weights.sum() == 15
+        assert tracemalloc.get_traced_memory()[1] < 10_000_000
+    finally:
+        tracemalloc.stop()
 
 
 # ---- .onnx ----

@@ -137,7 +137,7 @@ def run(options: argparse.Namespace, prog: str) -> int:
         ToolError: It cannot be done.
         OSError: A file cannot be read or written.
     """
-    from pogosim.policy.c_header import checked_prefix, header_of
+    from pogosim.policy.c_header import check_size, checked_prefix, header_of
     from pogosim.policy.calibration import read_observations
     from pogosim.policy.policy import Policy
     from pogosim.policy.reading import read_policy, with_scaling
@@ -146,6 +146,7 @@ def run(options: argparse.Namespace, prog: str) -> int:
     output = checked_header(options)
     checked_prefix(options.name)
     network = read_policy(Path(options.policy), options.activation, options.output_activation)
+    check_size(network)
     if options.scaling is not None:
         network = with_scaling(network, Path(options.scaling))
     observations = read_observations(Path(options.calibration), network) if options.calibration is not None else None

@@ -16,12 +16,13 @@ from pogosim.policy.c_parts import ADD_PRODUCT, OF_FLOAT_LAYER, OF_FLOATS, OF_IN
 from pogosim.policy.c_text import Array, literal
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.fixed_point import ARGUMENT_BITS, MOST_SUM, MOST_VALUE, ONE, Affine, FixedLayer
-from pogosim.policy.network import NAME, Dense, Gru, Layer, Numbers
+from pogosim.policy.network import NAME, Dense, Gru, Layer, Network, Numbers
 from pogosim.policy.policy import Policy
 from pogosim.policy.tanh_table import TABLE
 from pogosim.policy.test_vector import TestVector
 
 WIDTH = 120
+MOST_WEIGHTS = 1 << 18  # several times as many as a robot has memory for
 FLOAT_TOLERANCE = 1e-4  # of the greatest output: compilers may contract operations
 # Multiplications of a call of a function, at most.
 MULTIPLICATIONS = {
@@ -384,6 +385,23 @@ def self_test(policy: Policy, vector: TestVector) -> list[str]:
     ]
 
 
+def check_size(network: Network) -> None:
+    """Check that a policy is not far too large for a robot.
+
+    Raises:
+        PolicyError: It is.
+    """
+    weights = sum(
+        layer.weights.size + (0 if isinstance(layer, Dense) else layer.recurrent_weights.size)
+        for layer in network.layers
+    )
+    if weights > MOST_WEIGHTS:
+        raise PolicyError(
+            f"the policy has {weights} weights; expected {MOST_WEIGHTS} at most, which are already more than the "
+            "128 KiB of a robot: train a smaller network"
+        )
+
+
 def header_of(policy: Policy, vector: TestVector, prefix: str, source: str) -> Header:
     """Return a policy as a header in C.
 
@@ -394,9 +412,10 @@ def header_of(policy: Policy, vector: TestVector, prefix: str, source: str) -> H
         source: What the policy is from, for the comment at the top.
 
     Raises:
-        PolicyError: The prefix is no name in C.
+        PolicyError: The prefix is no name in C, or the policy is far too large.
     """
     checked_prefix(prefix)
+    check_size(policy.network)
     is_fixed = policy.fixed is not None
     parts = fixed_parts(policy) if is_fixed else float_parts(policy)
     value = "int32_t" if is_fixed else "float"

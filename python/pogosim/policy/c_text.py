@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,18 @@ import numpy.typing as npt
 
 WIDTH = 116  # of the lines of an array, without their indentation
 BYTES = {"int8_t": 1, "uint8_t": 1, "int16_t": 2, "int32_t": 4, "float": 4}
+
+
+def filled(words: Sequence[str]) -> list[str]:
+    """Return words in lines of up to WIDTH characters, as textwrap does, which takes minutes for a megabyte."""
+    made: list[str] = []
+    line = ""
+    for word in words:
+        if line and len(line) + 1 + len(word) > WIDTH:
+            made.append(line)
+            line = ""
+        line = f"{line} {word}" if line else word
+    return [*made, line]
 
 
 def literal(value: Any, kind: str) -> str:
@@ -48,7 +60,8 @@ class Array:
         made = [f"// {self.comment}"] if self.comment else []
         made.append(f"static {self.kind} const {self.name}{dimensions} = {{")
         for row in self.values.reshape(-1, self.values.shape[-1]):
-            numbers = ", ".join(literal(value, self.kind) for value in row)
-            text = f"{{{numbers}}}," if self.values.ndim == 2 else f"{numbers},"
-            made += [f"    {line}" for line in textwrap.wrap(text, WIDTH, break_on_hyphens=False)]
+            numbers = [f"{literal(value, self.kind)}," for value in row]
+            if self.values.ndim == 2:
+                numbers[0], numbers[-1] = f"{{{numbers[0]}", f"{numbers[-1][:-1]}}},"
+            made += [f"    {line}" for line in filled(numbers)]
         return [*made, "};"]

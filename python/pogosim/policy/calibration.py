@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.errors import DamagedFileError
+from pogosim.policy.content import check_file
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import MOST_FLOAT, Network
 from pogosim.policy.npz_file import WRONG_FILE, read_arrays
@@ -32,6 +33,7 @@ def read_observations(file: Path, network: Network) -> npt.NDArray[np.float64]:
         PolicyError: The file is none of these, has too few inputs, or numbers that are not finite.
         OSError: It cannot be read.
     """
+    check_file(file)
     if file.suffix == ".npz":
         arrays = read_arrays(file)
         if OBSERVATIONS not in arrays and len(arrays) != 1:

@@ -30,10 +30,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.nearest_name import unknown
+from pogosim.policy.content import MOST_BYTES, content_of
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import GATES, Dense, Elman, Gru, Layer, Network, network_of
 
-MOST_BYTES = 1 << 28  # of all arrays of a file
 OF_LAYER = ("weights", "bias", "activation", "kind", "recurrent_weights", "recurrent_bias")
 NUMBERS = ("input_offset", "input_scale", "output_scale", "output_offset", "input_low", "input_high")
 SCALING = ("input_names", "output_names", *NUMBERS)
@@ -63,12 +63,15 @@ def read_arrays(file: Path) -> Arrays:
         PolicyError: It is no such file, is damaged, or holds Python objects, which are not read.
         OSError: It cannot be read.
     """
-    content = file.read_bytes()
+    content = content_of(file)
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             size = sum(member.file_size for member in archive.infolist())
+            members = [name.removesuffix(".npy") for name in archive.namelist()]
         if size > MOST_BYTES:
             raise PolicyError(f"{file} has {size} bytes of arrays; expected {MOST_BYTES} at most")
+        if twice := next((name for name in members if members.count(name) > 1), None):
+            raise PolicyError(f"{file} has two arrays {twice!r}; expected one of each name")
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
             found = {name: arrays[name] for name in arrays.files}
     except PolicyError:
@@ -140,7 +143,7 @@ def network_in(arrays: Mapping[str, npt.NDArray[Any]], place: str) -> Network:
     for name, array in arrays.items():
         if name in SCALING:
             continue
-        found = re.fullmatch(r"layer(0|[1-9]\d{0,3})_(\w+)", name)
+        found = re.fullmatch(r"layer(0|[1-9]\d{0,3})_(\w+)", name, re.ASCII)
         if found is None or found[2] not in OF_LAYER:
             known = [*SCALING, *(f"layer{found[1] if found else 0}_{part}" for part in OF_LAYER)]
             hint = "expected layer0_weights and others, as docs/policy_export.md lists them"

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from pogosim.extras import installing
 from pogosim.policy import float_arithmetic
+from pogosim.policy.content import check_file
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import Dense, Elman, Gru, Layer, Network, network_of
 
@@ -29,7 +30,6 @@ ELEMENTWISE = ("Add", "Sub", "Mul", "Div")
 # Sizes of vectors, and what recurrent layers begin with; the comparison at the end finds states that are not 0.
 BESIDE = ("Constant", "ConstantOfShape", "Shape", "Gather", "Slice", "Concat", "Expand", *SHAPE_ONLY)
 OPERATORS = ("Gemm", "MatMul", *ELEMENTWISE, *ACTIVATION, "Clip", "RNN", "GRU", *SHAPE_ONLY)
-MOST_BYTES = 1 << 28
 COMPARED = 8  # random inputs
 TOLERANCE = 1e-4  # of the greatest output
 
@@ -287,8 +287,7 @@ def read_onnx(file: Path) -> Network:
         if error.name != "onnx":
             raise
         raise PolicyError(f"{file} needs the Python package 'onnx'; install it: {installing('policy')}") from None
-    if file.stat().st_size > MOST_BYTES:
-        raise PolicyError(f"{file} has more than {MOST_BYTES} bytes")
+    check_file(file)
     try:
         model = onnx.load(file)
         onnx.checker.check_model(model)

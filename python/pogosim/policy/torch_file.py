@@ -8,9 +8,11 @@ file: activations are given.
 
 from __future__ import annotations
 
+import functools
 import io
 import math
 import pickle
+import pickletools
 import struct
 import zipfile
 import zlib
@@ -23,11 +25,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.policy.content import MOST_BYTES, content_of
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import Dense, Elman, Gru, Layer, Network, network_of
 
 STORAGES = {"FloatStorage": "f4", "DoubleStorage": "f8", "HalfStorage": "f2", "LongStorage": "i8", "IntStorage": "i4"}
-MOST_BYTES = 1 << 28
 RECURRENT = ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
 SAVE = "save it by torch.save(module.state_dict(), FILE)"
 WRONG_PICKLE = (
@@ -60,7 +62,7 @@ class Kind:
 def tensor(
     storage: npt.NDArray[Any], offset: int, shape: Sequence[int], stride: Sequence[int], *_: Any
 ) -> npt.NDArray[Any]:
-    """Return a tensor in a stored array, as PyTorch's pickles ask for it.
+    """Return a tensor in a stored array, as PyTorch's pickles ask for it: a view, which takes no memory of its own.
 
     Raises:
         ValueError: It is not within the array.
@@ -69,13 +71,14 @@ def tensor(
     if len(sizes) != len(steps) or min([int(offset), *sizes, *steps], default=0) < 0:
         raise ValueError("a tensor has a wrong shape")
     last = int(offset) + sum((size - 1) * step for size, step in zip(sizes, steps, strict=True))
-    if math.prod(sizes) > MOST_BYTES or (math.prod(sizes) > 0 and last >= len(storage)):
+    if math.prod(sizes) > len(storage) or (math.prod(sizes) > 0 and last >= len(storage)):
         raise ValueError("a tensor is larger than its data")
     if not math.prod(sizes):
         return np.zeros(sizes, storage.dtype)
     width = storage.itemsize
-    view = np.lib.stride_tricks.as_strided(storage[int(offset) :], sizes, [step * width for step in steps])
-    return np.array(view)
+    return np.lib.stride_tricks.as_strided(
+        storage[int(offset) :], sizes, [step * width for step in steps], writeable=False
+    )
 
 
 def parameter(data: npt.NDArray[Any], *_: Any) -> npt.NDArray[Any]:
@@ -117,6 +120,17 @@ class Reader(pickle.Unpickler):
         return self.stored(str(key), kind.code)
 
 
+def check_memo(content: bytes) -> None:
+    """Check that a pickle does not ask for more places to remember its objects in than it can have objects.
+
+    Raises:
+        ValueError: It does, or is damaged.
+    """
+    for opcode, argument, _ in pickletools.genops(content):
+        if opcode.name in ("PUT", "BINPUT", "LONG_BINPUT") and argument > len(content):
+            raise ValueError(f"its pickle has {len(content)} bytes and an object numbered {argument}")
+
+
 def state_dict_in(content: bytes) -> dict[str, npt.NDArray[Any]]:
     """Return the tensors of a file, by name, in their order.
 
@@ -134,10 +148,13 @@ def state_dict_in(content: bytes) -> dict[str, npt.NDArray[Any]]:
         order = archive.read(f"{folder}byteorder") if f"{folder}byteorder" in archive.namelist() else b"little"
         sign = ">" if order.strip() == b"big" else "<"
 
+        @functools.cache
         def stored(key: str, code: str) -> npt.NDArray[Any]:
             return np.frombuffer(archive.read(f"{folder}data/{key}"), sign + code)
 
-        found = Reader(archive.read(pickles[0]), stored).load()
+        content = archive.read(pickles[0])
+        check_memo(content)
+        found = Reader(content, stored).load()
     if not isinstance(found, dict) or not all(
         isinstance(name, str) and isinstance(array, np.ndarray) for name, array in found.items()
     ):
@@ -152,7 +169,7 @@ def read_state_dict(file: Path) -> dict[str, npt.NDArray[Any]]:
         PolicyError: The file is damaged, or holds something else.
         OSError: It cannot be read.
     """
-    content = file.read_bytes()
+    content = content_of(file)
     if not zipfile.is_zipfile(io.BytesIO(content)):
         raise PolicyError(f"{file} is damaged, or no file of PyTorch 1.6 or later: {SAVE}")
     try:
