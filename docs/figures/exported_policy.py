@@ -130,7 +130,7 @@ def sizes() -> Quote:
     """Return what a call takes on an emulated robot, of two policies with all kinds of numbers."""
     pogosim_ = find_installation()
     rows = [
-        "| policy | numbers | flash | state | multiplications | cycles | of a tick |",
+        "| policy | numbers | program | state | multiplications | cycles | of a tick |",
         "|---|---|---|---|---|---|---|",
     ]
     for numbers in NUMBERS:
@@ -138,9 +138,9 @@ def sizes() -> Quote:
             header = header_of(policy, vector_of(policy, None), "policy", "policy.npz")
             cost = measure(header.text, "policy", policy.network.is_recurrent, pogosim_)
             share = f"{100 * cost.share:.2g} %" if cost.share < 0.995 else f"{100 * cost.share:.0f} %"
-            flash = f"{header.constant_bytes + cost.code_bytes} bytes"
+            program = f"{header.constant_bytes + cost.code_bytes} bytes"
             rows.append(
-                f"| {policy.network.describe()} | {numbers} | {flash} | {header.state_bytes} bytes "
+                f"| {policy.network.describe()} | {numbers} | {program} | {header.state_bytes} bytes "
                 f"| {header.multiplications} | {cost.cycles:.0f} | {share} |"
             )
     return Quote((*rows[:2], *sorted(rows[2:], key=lambda row: row.split("|")[1])))
@@ -202,9 +202,12 @@ def draw(folder: Path) -> dict[str, Picture | Quote]:
         """Return how far the median robot is from where it is in another run, before robots meet."""
         return f"{np.median(distances(one, other)[near]):.2g} mm"
 
+    most_mm = distances(native, emulated).max()
+    same = "the firmware moves all robots to the bit as the program in C"
+    if most_mm > 0:
+        same = f"the firmware moves all robots within {most_mm:.2g} mm of their places with the program in C"
     text = (
-        f"The firmware moves all robots exactly as the program in C: in {DURATION_S:g} s, none is more than "
-        f"{distances(native, emulated).max():g} mm from its place there. After {BEFORE_CONTACTS_S:g} s, before most "
+        f"In {DURATION_S:g} s, {same}. After {BEFORE_CONTACTS_S:g} s, before most "
         f"robots meet, the median robot of firmware whose code takes time (`cpu_time: counted`) is "
         f"{apart(native, counted)} from there, and that of a host {apart(native, whole)}: it acts a tick later, and "
         f"draws other noise. Among hosts, which draw the same noise, int16 moves it by {apart(exact, whole)} from "

@@ -31,12 +31,12 @@ enum {
 };
 // Outputs:
 enum {
-    POLICY_OUTPUT_MOTOR_RIGHT,  // motor_right: value * 1023 + 0, within 2.32 of the policy in floats
-    POLICY_OUTPUT_MOTOR_LEFT,   // motor_left: value * 1023 + 0, within 3.54 of the policy in floats
+    POLICY_OUTPUT_MOTOR_RIGHT,  // motor_right: value * 1023 + 0, within 2.32 of exact arithmetic
+    POLICY_OUTPUT_MOTOR_LEFT,   // motor_left: value * 1023 + 0, within 3.54 of exact arithmetic
     POLICY_OUTPUTS
 };
 
-#define POLICY_CONSTANT_BYTES 763  // weights, biases, tables and test vector, in flash memory
+#define POLICY_CONSTANT_BYTES 763  // weights, biases, tables and test vector
 #define POLICY_STATE_BYTES 0  // of each robot, in USERDATA
 #define POLICY_STACK_BYTES 46  // arrays of a step
 #define POLICY_MULTIPLICATIONS 41  // of a step, at most

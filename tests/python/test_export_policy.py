@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -40,8 +41,8 @@ def test_header_of_the_example_is_that_of_its_network(tmp_path: Path) -> None:
     assert (tmp_path / "policy.h").read_text() == (EXAMPLE / "policy.h").read_text(), "export it again"
     first, *lines = result.output.splitlines()
     assert first == "policy.h: 3 inputs, 6 tanh, 2 hardtanh; int16"
-    assert [line.split()[0] for line in lines] == ["flash", "memory", "multiplications", "accuracy", "cycles"]
-    accuracy = re.search(r"within ([\d.]+) .* observations ([\d.]+) on average, ([\d.]+) at most", lines[3])
+    assert [line.split()[0] for line in lines] == ["program", "memory", "multiplications", "accuracy", "cycles"]
+    accuracy = re.search(r"within ([\d.]+) .* observations ([\d.]+) from floats on average, ([\d.]+) at most", lines[3])
     assert accuracy is not None
     bound, mean, most = map(float, accuracy.groups())
     assert mean <= most <= bound
@@ -51,6 +52,41 @@ def test_header_of_the_example_is_that_of_its_network(tmp_path: Path) -> None:
     )
     assert cycles is not None
     assert 2000 < int(cycles[1]) < 20000
+
+
+def test_observations_beyond_the_range_of_the_inputs_are_told(tmp_path: Path) -> None:
+    """The bound holds within the range alone, and observations of a policy with memory need not follow each other."""
+    rows = np.full((5, 3), 1500)
+    rows[1] = 3001
+    for name, rows_given, said in (
+        (
+            "plain",
+            rows,
+            r"; in 4 of the observations \S+ from floats on average, \S+ at most; 1 of 5 observations are ",
+        ),
+        ("plain", rows[1:2], r"range; 1 of 1 observations are beyond the range of the inputs, and are cut to it\n"),
+        ("plain", rows[2:], r"; in the 3 observations \S+ from floats on average, \S+ at most\n"),
+        ("gated", rows, r"of exact arithmetic, for a step from the same state\n"),
+    ):
+        Policy(random_network(ALL[name])).save(tmp_path / "a.npz")
+        np.save(tmp_path / "o.npy", rows_given)
+        options = ("-o", "a.h", "--numbers", "int16", "--calibration", "o.npy", "--no-cycles")
+        result = command(tmp_path, "export-policy", "a.npz", *options)
+        assert result.code == 0
+        assert re.search(said, result.output), result.output
+
+
+def test_full_standard_output_is_named(tmp_path: Path) -> None:
+    Policy(random_network(ALL["plain"])).save(tmp_path / "a.npz")
+    with Path("/dev/full").open("w") as full:
+        arguments = [sys.executable, "-m", "pogosim", "export-policy", "a.npz", "-o", "a.h", "--no-cycles"]
+        done = subprocess.run(
+            arguments, cwd=tmp_path, env=ENVIRONMENT, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    said = "a.h is complete, but the standard output cannot be written: No space left on device"
+    assert done.stderr == f"pogosim export-policy: {said}\n"
+    assert (tmp_path / "a.h").exists()
 
 
 def test_floats_take_many_times_as_long_as_whole_numbers(tmp_path: Path) -> None:

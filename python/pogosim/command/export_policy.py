@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 EPILOG = """POLICY is an .npz file of NumPy, an .onnx file, or a .pt file with the state_dict() of a PyTorch module:
 layers that see all values before them, Elman layers and GRUs. docs/policy_export.md lists the arrays and operators.
 
-float needs no other file. int16 and int8 compute in whole numbers, which robots do several times as fast; they need the
-range of each input, from observations of a run: an .npz or .npy file with an array of shape (..., inputs), or a data
-file with a column for each input."""
+float needs no other file. int16 and int8 compute in whole numbers, which robots do ten times as fast or more; they need
+the range of each input, from observations of a run: an .npz or .npy file with an array of shape (..., inputs), or a
+data file with a column for each input."""
 NUMBERS = ("float", "int16", "int8")
 ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")
-MEMORY_BYTES = 128 * 1024  # of a robot, for everything
+MEMORY_BYTES = 128 * 1024  # of a robot, for program, variables and stack
 
 
 def parser(prog: str) -> Parser:
@@ -82,7 +82,10 @@ def measured(header: Header, policy: Policy, prefix: str) -> Measured | str:
 
 
 def accuracy(policy: Policy, observations: object) -> list[str]:
-    """Return how far the outputs in whole numbers are from those in floats: at most, and in a run."""
+    """Return how far the outputs in whole numbers are from exact ones: at most, and from those in floats in a run.
+
+    What recurrent policies remember is left out of the latter: observations need not follow each other.
+    """
     import numpy as np
 
     from pogosim.policy.policy import Policy as Stepped
@@ -92,19 +95,18 @@ def accuracy(policy: Policy, observations: object) -> list[str]:
     bounds = policy.fixed.error_bound
     worst = int(np.argmax(bounds))
     where = "a step from the same state" if policy.network.is_recurrent else "any inputs in range"
-    text = f"outputs within {bounds[worst]:.3g} ({policy.network.output_names[worst]}) of those in floats, for {where}"
-    if observations is not None:
-        rows = np.asarray(observations)
-        policy.reset()
-        exact = Stepped(policy.network)
-        if policy.network.is_recurrent:
-            off = np.array([policy.step(row) - exact.step(np.rint(row)) for row in rows])
-        else:
-            off = policy.step(rows) - exact.step(np.rint(rows))
-        policy.reset()
-        text += (
-            f"; in the {len(rows)} observations {np.abs(off).mean():.3g} on average, {np.abs(off).max():.3g} at most"
-        )
+    text = f"outputs within {bounds[worst]:.3g} ({policy.network.output_names[worst]}) of exact arithmetic, for {where}"
+    if observations is not None and not policy.network.is_recurrent:
+        rows = np.rint(np.asarray(observations))
+        is_within = ((rows >= policy.fixed.input_low) & (rows <= policy.fixed.input_high)).all(axis=1)
+        beyond = int((~is_within).sum())
+        where = f"in the {len(rows)} observations" if not beyond else f"in {len(rows) - beyond} of the observations"
+        if is_within.any():
+            off = np.abs(policy.step(rows[is_within]) - Stepped(policy.network).step(rows[is_within]))
+            policy.reset()
+            text += f"; {where} {off.mean():.3g} from floats on average, {off.max():.3g} at most"
+        if beyond:
+            text += f"; {beyond} of {len(rows)} observations are beyond the range of the inputs, and are cut to it"
     return [f"accuracy         {text}"]
 
 
@@ -114,7 +116,7 @@ def report(header: Header, policy: Policy, cost: Measured | str, observations: o
     code = f" and {cost.code_bytes} bytes of code" if not isinstance(cost, str) else ""
     lines = [
         f"{output}: {policy.network.describe()}; {form}",
-        f"flash            {header.constant_bytes} bytes of constants{code}",
+        f"program          {header.constant_bytes} bytes of constants{code}",
         f"memory           {header.state_bytes} bytes of state, {header.stack_bytes} bytes of stack in a call",
         f"multiplications  {header.multiplications} per call",
         *accuracy(policy, observations),
@@ -155,8 +157,14 @@ def run(options: argparse.Namespace, prog: str) -> int:
     cost = "--no-cycles" if options.no_cycles else measured(header, policy, options.name)
     with partial_output(output) as partial:
         partial.write_text(header.text, encoding="utf-8")
-    say(*report(header, policy, cost, observations, options.output))
-    if header.constant_bytes + header.state_bytes + header.stack_bytes > MEMORY_BYTES:
+    try:
+        say(*report(header, policy, cost, observations, options.output))
+    except OSError as error:
+        return complain(
+            prog, f"{options.output} is complete, but the standard output cannot be written: {error.strerror}"
+        )
+    program_bytes = header.constant_bytes + (0 if isinstance(cost, str) else cost.code_bytes)
+    if program_bytes + header.state_bytes + header.stack_bytes > MEMORY_BYTES:
         warn(prog, f"the policy does not fit into the {MEMORY_BYTES // 1024} KiB of a robot")
     return 0
 

@@ -43,7 +43,7 @@ class Header:
 
     Attributes:
         text: The header.
-        constant_bytes: Weights, biases, tables and the test vector, in flash memory.
+        constant_bytes: Weights, biases, tables and the test vector.
         state_bytes: What a robot remembers, in USERDATA.
         stack_bytes: Arrays of a call.
         multiplications: In a call, at most.
@@ -297,7 +297,7 @@ def comments_of_outputs(policy: Policy) -> list[str]:
         text = f"{name}: value * {network.output_scale[index]:.6g} + {network.output_offset[index]:.6g}"
         if fixed is not None:
             what = " in a step" if network.is_recurrent else ""
-            text += f", within {fixed.error_bound[index]:.3g} of the policy in floats{what}"
+            text += f", within {fixed.error_bound[index]:.3g} of exact arithmetic{what}"
         made.append(text)
     return made
 
@@ -445,7 +445,7 @@ def header_of(policy: Policy, vector: TestVector, prefix: str, source: str) -> H
         "// Outputs:",
         *enumeration(policy.network.output_names, "output", comments_of_outputs(policy)),
         "",
-        f"#define @@CONSTANT_BYTES {constant_bytes}  // weights, biases, tables and test vector, in flash memory",
+        f"#define @@CONSTANT_BYTES {constant_bytes}  // weights, biases, tables and test vector",
         f"#define @@STATE_BYTES {state_bytes}  // of each robot, in USERDATA",
         f"#define @@STACK_BYTES {stack_bytes}  // arrays of a step",
         f"#define @@MULTIPLICATIONS {parts.multiplications}  // of a step, at most",

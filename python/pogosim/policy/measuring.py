@@ -119,7 +119,7 @@ def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation)
     Raises:
         FirmwareError: The robots' compiler is missing.
         ProjectError: It cannot be compiled.
-        PolicyError: The emulated robot's self test has failed.
+        PolicyError: The emulated robot's self test has failed, or the run has ended with another error.
         ToolError: The run cannot be profiled.
         OSError: The temporary folder cannot be written.
     """
@@ -132,9 +132,10 @@ def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation)
         configuration.write_text(CONFIGURATION, encoding="utf-8")
         raw = folder / "profile.json"
         with firmware_of(source, pogosim, is_quiet=True) as made:
-            if profile_run(made.firmware, raw, 1, ["-c", str(configuration)], pogosim) != 0:
+            if (code := profile_run(made.firmware, raw, 1, ["-c", str(configuration)], pogosim)) != 0:
                 raise PolicyError(
-                    "the exported policy fails its self test on an emulated robot: see the messages above"
+                    f"the run on an emulated robot that measures the policy ended with exit code {code}: its self test "
+                    "failed, or the messages above say why; --no-cycles exports without it"
                 )
             size = code_bytes(made.firmware, prefix)
         profile = read_profile(raw, "the profile of the policy")

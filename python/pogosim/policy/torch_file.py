@@ -127,7 +127,7 @@ def check_memo(content: bytes) -> None:
         ValueError: It does, or is damaged.
     """
     for opcode, argument, _ in pickletools.genops(content):
-        if opcode.name in ("PUT", "BINPUT", "LONG_BINPUT") and argument > len(content):
+        if opcode.name in ("PUT", "BINPUT", "LONG_BINPUT") and int(argument or 0) > len(content):
             raise ValueError(f"its pickle has {len(content)} bytes and an object numbered {argument}")
 
 
