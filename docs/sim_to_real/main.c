@@ -37,8 +37,8 @@ static void observe(void) {
 
 static void decide(void) {
 #if HAS_POLICY
-    policy_value_t inputs[POLICY_INPUT_COUNT];
-    policy_value_t outputs[POLICY_OUTPUT_COUNT];
+    policy_value_t inputs[POLICY_INPUTS];
+    policy_value_t outputs[POLICY_OUTPUTS];
     inputs[POLICY_INPUT_USER_DATA_LIGHT] = mydata->light;
     inputs[POLICY_INPUT_USER_DATA_AHEAD] = mydata->ahead;
     inputs[POLICY_INPUT_USER_DATA_RIGHT] = mydata->right;
