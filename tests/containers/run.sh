@@ -1,23 +1,31 @@
 #!/usr/bin/env bash
-# Makes the image of containers/Containerfile and the file of containers/pogosim.def from a wheel, and takes the first steps in
-# both, without network; loads modules/pogosim.tcl with both programs that read it; and lets linters look at the recipes.
-# Needs root, buildah, podman, runc and debootstrap, and Debian's mirrors and PyPI. Takes about 15 minutes; leaves nothing behind.
-#
-#   ./scripts/make_wheel.sh && sudo tests/containers/run.sh dist/pogobot_simulator-*_x86_64.whl
+# Tries containers/ and modules/ with a wheel: makes the images, takes a user's first steps in them, loads the module.
 set -euo pipefail
 
-usage() {
-    echo "$1. Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL" >&2
-    exit 2
-}
-[ $# -eq 1 ] && [ -f "$1" ] || usage "There is no wheel ${1:-}"
-[ "$(id -u)" -eq 0 ] || usage "This needs root"
+project=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$project/tests/distributions/machine.sh"
+usage="Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL
+
+Makes the image of containers/Containerfile and the file of containers/pogosim.def from WHEEL, and takes the first steps in both,
+without network; loads modules/pogosim.tcl with both programs that read it; and lets linters look at the recipes. WHEEL is for
+this machine's processor (./scripts/make_wheel.sh leaves it in dist). Needs Debian's mirrors and PyPI. Takes about 15 minutes;
+leaves nothing behind."
+
+refuse() { echo "run.sh: $1" >&2 && exit 2; }
+
+case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
+[ $# -eq 1 ] || { echo "$usage" >&2 && exit 2; }
+[ -f "$1" ] || refuse "there is no file $1"
+case ${1##*/} in
+    pogobot_simulator-*_"$(uname -m)".whl) ;;
+    *) refuse "$1 is no wheel of Pogosim for this machine, by its name; expected pogobot_simulator-*_$(uname -m).whl" ;;
+esac
+[ "$(id -u)" -eq 0 ] || refuse "only root can make machines and images"
 for program in buildah podman runc debootstrap; do
-    command -v "$program" >/dev/null || usage "$program is missing"
+    command -v "$program" >/dev/null || refuse "$program is not installed: sudo apt install $program"
 done
 
 wheel=$(realpath "$1")
-project=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 version=$(basename "$wheel" | cut -d- -f2)
 folder=$(mktemp -d)
 chmod 755 "$folder"
@@ -43,7 +51,8 @@ mkdir "$folder/dist"
     --dest "$folder/dist" "$wheel[watch]"
 
 say "A fresh Debian as the image to begin with"
-debootstrap --variant=minbase bookworm "$folder/debian" >/dev/null
+describe debian-12
+make_machine "$folder/debian" "$folder/debian.log"
 rm -rf "$folder"/debian/var/cache/apt/archives/*.deb "$folder"/debian/dev/*
 container=$(buildah "${images[@]}" from scratch)
 buildah "${images[@]}" add --quiet "$container" "$folder/debian" / >/dev/null
@@ -103,7 +112,9 @@ for check in --check-style --check-contrib "--dry-run --robot"; do
 done
 
 say "A fresh Debian with Apptainer"
-debootstrap --variant=minbase --include=apptainer,fakeroot,uidmap,squashfuse,squashfs-tools sid "$folder/machine" >/dev/null 2>&1
+suite=sid script=sid components=main  # which has a package of Apptainer
+make_machine "$folder/machine" "$folder/machine.log" --include=apptainer,fakeroot,uidmap,squashfuse,squashfs-tools
+let_reach_the_network "$folder/machine"
 useradd --root "$folder/machine" --create-home user
 mkdir "$folder/machine"/{here,project,.old}
 mknod -m 666 "$folder/fuse" c 10 229
@@ -117,7 +128,6 @@ mount --bind "$1/fuse" "$machine/dev/fuse"
 mount -t tmpfs tmpfs "$machine/run"
 mount --bind "$1" "$machine/here"
 mount --bind "$2" "$machine/project"
-cp /etc/resolv.conf /etc/hosts "$machine/etc"
 cd "$machine"
 pivot_root . .old
 umount -l /.old

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -160,3 +161,27 @@ def test_options_of_batches_in_jobs_exist() -> None:
         used = re.findall(r"(?<!\S)--?[A-Za-z][\w-]*", words)
         assert used
         assert [option for option in used if not re.search(rf"(?<!\S){option}\b", help_text)] == [], subcommand
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL"),
+        (
+            ["a.whl", "b.whl"],
+            "Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL",
+        ),
+        (["missing.whl"], "run.sh: there is no file missing.whl"),
+        (["pyproject.toml"], "run.sh: pyproject.toml is no wheel of Pogosim for this machine, by its name; expected "),
+    ],
+)
+def test_wrong_words_are_refused_before_anything_is_made(words: list[str], message: str) -> None:
+    command = [str(ROOT / "tests" / "containers" / "run.sh"), *words]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(message)
+
+
+def test_help_is_printed() -> None:
+    help_text = ran(ROOT, ROOT / "tests" / "containers" / "run.sh", "--help").output
+    assert help_text.startswith("Usage, as root")
