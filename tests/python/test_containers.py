@@ -154,7 +154,7 @@ def test_labels_are_those_of_the_specification_and_the_same_in_both() -> None:
 
 
 def test_options_of_batches_in_jobs_exist() -> None:
-    batches = re.findall(r"pogosim\.sif pogobatch( run| merge|) (-.*|jobs .*)", text(PAGE))
+    batches = re.findall(r"(?:pogosim\.sif|exec) pogobatch( run| merge|) (-.*|jobs .*)", text(PAGE))
     assert {subcommand for subcommand, _ in batches} == {"", " run", " merge"}
     for subcommand, words in batches:
         help_text = ran(ROOT, sys.executable, "-m", "pogosim", "batch", *subcommand.split(), "--help").output
