@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tries a wheel on a bare machine: a fresh distribution in a folder, with nothing but Python, a C compiler and make, as a user
+# Tries a wheel on a bare machine: a fresh distribution in a folder, with nothing but Python, gcc, g++ and make, as a user
 # who is not root and has no network.
 set -euo pipefail
 
@@ -32,8 +32,8 @@ chmod 755 "$machine"
 # Only plain files are below: what is mounted disappears with its namespace.
 trap 'rm -rf --one-file-system "$machine" "$machine.log"' EXIT
 
-echo "==> $name with Python, gcc and make, for $processor"
-make_machine "$machine" "$machine.log" --arch="$processor" --include=python3,python3-venv,gcc,libc6-dev,make
+echo "==> $name with Python, gcc, g++ and make, for $processor"
+make_machine "$machine" "$machine.log" --arch="$processor" --include=python3,python3-venv,gcc,g++,libc6-dev,make
 
 echo "==> The wheel, and those it requires"
 version=$(chroot "$machine" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
