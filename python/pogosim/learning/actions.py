@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
 from pogosim.firmware import is_firmware
-from pogosim.learning.quantities import Scaling, check_finite, resolved
+from pogosim.learning.quantities import Scaled, Scaling, check_finite, resolved
 from pogosim.learning.swarm_arrays import MOST_BYTES, PAYLOAD, USER_DATA, SwarmArrays, Value, field
 from pogosim.nearest_name import advice
 from pogosim.simulation import ConfigurationError
@@ -66,6 +66,66 @@ def find_action(swarm: SwarmArrays, name: str) -> Value:
     raise ConfigurationError(f"actions: there is no action {shown(name)}{advice(name, [*known, *others])}")
 
 
+def limits_of(swarm: SwarmArrays, name: str) -> tuple[float, float]:
+    """Return the least and the greatest number that the place of an action can hold."""
+    if name.startswith(USER_DATA):
+        kind = field_type(swarm, name).base
+        if kind.kind == "b":
+            return 0, 1
+        limits = np.iinfo(kind) if kind.kind in "iu" else np.finfo(kind)
+        return limits.min, limits.max
+    if name.startswith(PARAMETER):
+        return -math.inf, math.inf
+    usual = find_action(swarm, name)  # of a host: the whole of it
+    return cast("tuple[float, float]", (usual.low, usual.high))
+
+
+def field_type(swarm: SwarmArrays, name: str) -> np.dtype[Any]:
+    """Return the type of a member of user data."""
+    kind: np.dtype[Any] = swarm.runs[0].user_data.dtype
+    for part in name.removeprefix(USER_DATA).split("."):
+        kind = kind[part]
+    return kind
+
+
+def check_holds(quantity: Scaled, limits: tuple[float, float]) -> None:
+    """Check that the place of an action can hold all numbers of its range.
+
+    Raises:
+        ConfigurationError: It cannot; another number would be written.
+    """
+    if quantity.low < limits[0] or quantity.high > limits[1]:
+        raise ConfigurationError(
+            f"actions: {quantity.name}: expected a range within {limits[0]:.10g} to {limits[1]:.10g}, found "
+            f"{quantity.low:.10g} to {quantity.high:.10g}"
+        )
+
+
+def check_apart(quantities: Sequence[Scaled]) -> None:
+    """Check that no two actions are written to the same place.
+
+    Raises:
+        ConfigurationError: Two are.
+    """
+    taken: dict[str, str] = {}
+    for name in (quantity.name for quantity in quantities):
+        place = {"led": "leds"}.get(name, "message" if PAYLOAD.fullmatch(name) else name)
+        if place in taken:
+            raise ConfigurationError(f"actions: {taken[place]!r} and {name!r} are written to the same place: keep one")
+        taken[place] = name
+
+
+def whole_numbers(values: Array, kind: np.dtype[Any]) -> Array:
+    """Return rounded numbers that a type of integers can hold: its greatest may be none of 32 bits."""
+    if kind.kind == "b":
+        return np.rint(values)
+    limits = np.iinfo(kind)
+    most = np.float32(limits.max)
+    if int(most) > limits.max:
+        most = np.nextafter(most, np.float32(0))
+    return np.clip(np.rint(values), np.float32(limits.min), most)
+
+
 class Actions:
     """Writes what a policy gives where robots find it.
 
@@ -81,6 +141,9 @@ class Actions:
         """
         self._swarm = swarm
         self.scaling = Scaling(resolved("actions", actions, lambda name: find_action(swarm, name)))
+        check_apart(self.scaling.quantities)
+        for quantity in self.scaling.quantities:
+            check_holds(quantity, limits_of(swarm, quantity.name))
         self._own = np.zeros((len(swarm.runs), swarm.robots, len(self.scaling)), np.float32)
         self._views: dict[str, list[npt.NDArray[Any]]] = {}  # of user data, by member
         self._writes: list[tuple[Write, slice]] = [
@@ -147,7 +210,7 @@ class Actions:
         if member not in self._views:
             self._views[member] = [field(simulation.user_data, member) for simulation in self._swarm.runs]
         for view, of_run in zip(self._views[member], values, strict=True):
-            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else np.rint(of_run)).reshape(
+            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else whole_numbers(of_run, view.dtype)).reshape(
                 -1, *view.shape[1:]
             )
 

@@ -87,7 +87,10 @@ class Parser:
             raise ConfigurationError(
                 f"{self._what}: an expression has at most {MOST_CHARACTERS} characters, found {len(self._text)}"
             )
-        term = self._disjunction()
+        try:
+            term = self._disjunction()
+        except RecursionError:
+            raise self._wrong("there are too many brackets") from None
         if self._skip_blanks() < len(self._text):
             raise self._wrong("expected 'and', 'or', an operator or the end")
         return term

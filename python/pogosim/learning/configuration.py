@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import tempfile
 import weakref
@@ -12,12 +13,18 @@ from typing import Any
 from pogosim.simulation.errors import given
 
 
+def remove_folder(folder: Path, process: int) -> None:
+    """Remove a folder, unless this process is a copy (fork) of the one that made it and may still need it."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class ConfigurationFile:
     """A file with a configuration: that of a path, or a temporary one with a map in it.
 
     Attributes:
         path: It. Relative names in a map are searched as those in a file of the working folder.
-        close: Removes a temporary file, as the end of this object does.
+        close: Removes a temporary file, as the end of this object does; only in the process that wrote it.
     """
 
     def __init__(self, configuration: Any) -> None:
@@ -34,6 +41,6 @@ class ConfigurationFile:
 
         text = dump_yaml(given.value("configuration", configuration))
         folder = Path(tempfile.mkdtemp(prefix="pogosim-"))
-        self.close = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        self.close = weakref.finalize(self, remove_folder, folder, os.getpid())
         self.path = folder / "configuration.yaml"
         self.path.write_text(text, encoding="utf-8")

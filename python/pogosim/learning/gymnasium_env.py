@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import without_numpy
 from pogosim.learning.shims import RENDER_MODES, RUN, Rendering, agent_is_robot, info_of_run, needs, one_run
 from pogosim.learning.swarm_env import SwarmEnv
 
@@ -64,6 +65,7 @@ class GymnasiumEnv(gymnasium.Env[Array, Array]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         """Begin an episode, see `SwarmEnv.reset`. Equal seeds give equal episodes."""
+        seed = without_numpy(seed)
         super().reset(seed=seed, options=options)
         observation, info = self.swarm_env.reset(seed)
         self._rendering.after_reset()

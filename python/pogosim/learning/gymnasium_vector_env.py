@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -98,6 +99,8 @@ class GymnasiumVectorEnv(VectorEnv[Array, Array, Array]):
             ConfigurationError: An argument is wrong, or a mask parts the robots of a run.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
+        if options is not None and not isinstance(options, Mapping):
+            raise given.refused("options", "a map", options)
         mask = (options or {}).get("reset_mask")
         which = None if mask is None else self._runs_of(mask)
         observation, info = self.swarm_env.reset(seed, which)

@@ -18,13 +18,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pogosim.arguments import shown
 from pogosim.learning.quantities import Scaling
 from pogosim.simulation.errors import ConfigurationError, given
 
 Arrays = dict[str, npt.NDArray[Any]]
 
 NAMES = {"input": "observation", "output": "actions"}  # the argument of an environment that they are from
-NUMBERS = ("input_offset", "input_scale", "output_offset", "output_scale")
+NUMBERS = ("input_offset", "input_scale", "output_offset", "output_scale", "input_low", "input_high")
 
 
 def name_in_c(feature: str) -> str:
@@ -87,6 +88,14 @@ def check_names(what: str, kind: str, found: Sequence[str], expected: Sequence[s
             raise ConfigurationError(f"{begin}: its {kind} {index} is {own!r}, and that of the environment {other!r}")
 
 
+def is_close(found: Any, expected: npt.NDArray[Any], tolerance: Any) -> bool:
+    """Tell whether an array has the numbers expected, but for rounding: a 100000th of each, or the tolerance."""
+    array = np.asarray(found)
+    if array.dtype.kind not in "biuf" or array.shape != expected.shape:
+        return False
+    return bool((abs(array - expected) <= np.maximum(1e-5 * abs(expected), tolerance)).all())
+
+
 def check_policy(policy: Any, arrays: Arrays) -> Mapping[str, Any]:
     """Check that a policy is for an environment, and return its arrays.
 
@@ -105,10 +114,12 @@ def check_policy(policy: Any, arrays: Arrays) -> Mapping[str, Any]:
             raise ConfigurationError(f"{what} has no array {name}: save it with **env.policy_arrays()")
         own = [str(one) for one in np.atleast_1d(found[name])]
         check_names(what, kind, own, arrays[name].tolist())
+    # Offsets near 0 are rounded by as much as their range is wide.
+    tolerances = {"input_offset": 1e-5 / arrays["input_scale"], "output_offset": 1e-5 * arrays["output_scale"]}
     for name in NUMBERS:
-        if name in found and not np.allclose(found[name], arrays[name], rtol=1e-5, atol=1e-6):
+        if name in found and not is_close(found[name], arrays[name], tolerances.get(name, 0.0)):
             raise ConfigurationError(
-                f"{what} is for other ranges: its {name} is {np.round(found[name], 6).tolist()}, and that of the "
-                f"environment {np.round(arrays[name], 6).tolist()}"
+                f"{what} is for other ranges: its {name} is {shown(np.asarray(found[name]).tolist())}, and that "
+                f"of the environment {shown(arrays[name].tolist())}"
             )
     return found

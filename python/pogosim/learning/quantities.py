@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -90,11 +91,19 @@ class Scaled:
         return (self.name,) if self.count == 1 else tuple(f"{self.name}[{entry}]" for entry in range(self.count))
 
 
+def fits_float32(low: float, high: float) -> bool:
+    """Tell whether a range, low < high, and its scaling from -1 to 1 can be represented in 32 bits."""
+    half, middle = high / 2 - low / 2, low / 2 + high / 2
+    with np.errstate(all="ignore"):
+        numbers = np.array([low, high, half, 1 / half if half else math.inf, middle]).astype(np.float32)
+        return bool(np.isfinite(numbers).all() and numbers[0] < numbers[1] and np.isfinite(numbers[4] * numbers[3]))
+
+
 def scaled_quantity(what: str, quantity: Quantity, value: Value) -> Scaled:
     """Return a quantity with its range, or else that of the value.
 
     Raises:
-        ConfigurationError: It has no range, or one that is empty or not finite.
+        ConfigurationError: It has no range, or one that is empty, not finite, or beyond 32 bits.
     """
     if (quantity.low is None or quantity.high is None) and (value.low is None or value.high is None):
         raise ConfigurationError(f"{what}: {quantity.name!r} needs a range: ({quantity.name!r}, low, high)")
@@ -104,6 +113,10 @@ def scaled_quantity(what: str, quantity: Quantity, value: Value) -> Scaled:
     least, most = given.finite(name, low), given.finite(name, high)
     if not least < most:
         raise ConfigurationError(f"{name}: expected low < high, found {least:g} and {most:g}")
+    if not fits_float32(least, most):
+        raise ConfigurationError(
+            f"{name}: the range from {least!r} to {most!r} is too wide or too narrow for numbers of 32 bits"
+        )
     return Scaled(quantity.name, value.count, least, most, quantity.is_scaled)
 
 
@@ -174,7 +187,11 @@ class Scaling:
 
 
 def check_finite(
-    what: str, values: npt.NDArray[Any], names: Sequence[str] = (), where: Callable[[], str] = str, advice: str = ""
+    what: str,
+    values: npt.NDArray[Any],
+    names: Sequence[str] = (),
+    where: Callable[[int], str] = lambda _run: "",
+    advice: str = "",
 ) -> None:
     """Check that all numbers of robots are finite.
 
@@ -182,7 +199,7 @@ def check_finite(
         what: "actions", "observation" or "reward".
         values: Shape (runs, robots) or (runs, robots, numbers).
         names: Those of the numbers.
-        where: Returns what the message says of the time.
+        where: Returns what the message says of the time of a run.
         advice: What it says in the end.
 
     Raises:
@@ -195,5 +212,5 @@ def check_finite(
     of = f", {names[number[0]]}" if number else ""
     found = f"{values[(run, robot, *number)]:g}"
     raise ConfigurationError(
-        f"{what}: expected finite numbers, found {found} for run {run}, robot {robot}{of}{where()}{advice}"
+        f"{what}: expected finite numbers, found {found} for run {run}, robot {robot}{of}{where(run)}{advice}"
     )

@@ -21,6 +21,12 @@ DOMAIN_KEYS = {
     "categorical": ("choices",),
     "normal": ("mean", "stddev"),
 }
+# Keys that no draw can change, and why.
+NOT_DRAWN = {
+    "time_step": "a decision has the same number of time steps in all episodes",
+    "simulation_time": "episodes end after the same time; use a function as `end`",
+    "seed": "episodes draw it, from the seed of `reset`",
+}
 FORMS = "an interval [low, high], a list of values, a map such as {type: int, min: 1, max: 9}, or a function"
 
 
@@ -33,6 +39,8 @@ def interval(name: str, low: float, high: float, is_log: bool) -> Draw:
     """Return a uniform distribution, of the number or of its logarithm."""
     if not low <= high:
         raise ConfigurationError(f"{name}: expected low <= high, found [{low:g}, {high:g}]")
+    if not math.isfinite(high - low):
+        raise ConfigurationError(f"{name}: the interval from {low:g} to {high:g} is too wide")
     if not is_log:
         return lambda generator: float(generator.uniform(low, high))
     if low <= 0:
@@ -60,7 +68,7 @@ def one_of(name: str, values: Any) -> Draw:
 def of_domain(name: str, domain: Mapping[str, Any]) -> Draw:
     """Return the distribution that a map describes."""
     kind = domain.get("type")
-    if kind not in DOMAIN_KEYS:
+    if not isinstance(kind, str) or kind not in DOMAIN_KEYS:
         raise given.refused(f"{name}.type", f"one of {', '.join(DOMAIN_KEYS)}", kind)
     keys = DOMAIN_KEYS[kind]
     for key in domain:
@@ -78,7 +86,7 @@ def of_domain(name: str, domain: Mapping[str, Any]) -> Draw:
         return lambda generator: float(generator.normal(mean, stddev))
     is_log = given.boolean(f"{name}.log", domain.get("log", False))
     if kind == "int":
-        least, most = (given.integer(f"{name}.{key}", domain[key]) for key in ("min", "max"))
+        least, most = (given.integer(f"{name}.{key}", domain[key], -(2**63), 2**63 - 1) for key in ("min", "max"))
         return whole_numbers(name, least, most, is_log)
     low, high = (given.finite(f"{name}.{key}", domain[key]) for key in ("min", "max"))
     return interval(name, low, high, is_log)
@@ -127,6 +135,8 @@ class Randomization:
         for key, values in (randomize or {}).items():
             name = given.text("randomize: a key", key)
             self._draws[name] = draw_of(f"randomize: {name}", values)
+            if name in NOT_DRAWN:
+                raise ConfigurationError(f"randomize: {name} cannot be drawn: {NOT_DRAWN[name]}")
         self.keys = tuple(self._draws)
 
     def drawn(self, generator: np.random.Generator) -> dict[str, Any]:

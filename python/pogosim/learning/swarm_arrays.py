@@ -23,8 +23,8 @@ FACES = 4
 BRIGHTEST = 32767  # sensor counts
 QUEUE = 20  # messages, `message_queue_size` of robots
 USER_DATA, COLUMN = "user_data.", "column."
-PAYLOAD = re.compile(r"message\((\d+)\)")
-ENTRY = re.compile(r"(.+)\[(\d+)\]")
+PAYLOAD = re.compile(r"message\((\d{1,9})\)", re.ASCII)
+ENTRY = re.compile(r"(.+)\[(\d{1,9})\]", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -147,6 +147,25 @@ def all_names(known: Mapping[str, Value]) -> list[str]:
     return [*(name for name, value in known.items() if value.count == 1), *entries]
 
 
+def has_payloads(known: Mapping[str, Value]) -> bool:
+    """Tell whether messages that a host hears are among values; a column may have the name `messages`, too."""
+    return known.get("messages") == OF_HOST["messages"]
+
+
+def find_whole(known: Mapping[str, Value], name: str, what: str) -> Value | None:
+    """Return a value by its name without an index; None: there is none.
+
+    Raises:
+        ConfigurationError: It is a message of a wrong size.
+    """
+    payload = PAYLOAD.fullmatch(name) if has_payloads(known) else None
+    if name in known or payload is None:
+        return known.get(name)
+    if not 1 <= int(payload[1]) <= MOST_BYTES:
+        raise ConfigurationError(f"{what}: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
+    return Value(int(payload[1]), 0, 255)
+
+
 def find_value(known: Mapping[str, Value], name: str, what: str) -> Value:
     """Return a value by its name, which may have an index.
 
@@ -158,18 +177,14 @@ def find_value(known: Mapping[str, Value], name: str, what: str) -> Value:
     Raises:
         ConfigurationError: There is none; names the nearest.
     """
-    if name in known:
-        return known[name]
-    if (payload := PAYLOAD.fullmatch(name)) and "messages" in known:
-        if not 1 <= int(payload[1]) <= MOST_BYTES:
-            raise ConfigurationError(f"{what}: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
-        return Value(int(payload[1]), 0, 255)
-    if entry := ENTRY.fullmatch(name):
-        whole = find_value(known, entry[1], what)
+    if (found := find_whole(known, name, what)) is not None:
+        return found
+    entry = ENTRY.fullmatch(name)
+    if entry and (whole := find_whole(known, entry[1], what)) is not None:
         if int(entry[2]) >= whole.count:
             raise ConfigurationError(f"{what}: {shown(name)}: {entry[1]} has {whole.count} entries, from 0")
         return Value(1, whole.low, whole.high, int(entry[2]))
-    sized = ["message(4)"] if "messages" in known else []
+    sized = ["message(4)"] if has_payloads(known) else []
     raise ConfigurationError(f"{what}: the robots have no value {shown(name)}{advice(name, [*known, *sized])}")
 
 
@@ -204,8 +219,9 @@ class SwarmArrays:
         self._robot_count = len(first.robot_ids)
         self.robots = len(self._all_rows)
         self.rows = as_slice(self._all_rows)
-        self._brain: VectorBrain | None = runs.brain(category) if "messages" in self.known else None
-        self._cache: dict[str, Array] = {}
+        self._brain: VectorBrain | None = runs.brain(category) if is_hosted(first, category) else None
+        self._cache: dict[str, Array] = {}  # values, by name
+        self._parts: dict[str, Array] = {}  # what they are made of: a value may have the name of one
         self._needs_messages = False
 
     @property
@@ -229,29 +245,29 @@ class SwarmArrays:
         """Simulated time of each run, s. Shape (runs,)."""
         return np.array([simulation.time for simulation in self.runs])
 
-    def when(self) -> str:
-        """Return the time as messages say it."""
-        return f" at t = {self.time_s.max():g} s"
+    def when(self, run: int) -> str:
+        """Return the time of a run as messages say it."""
+        return f" at t = {self.runs[run].time:g} s"
 
     @property
     def positions(self) -> Array:
         """Positions, mm. Shape (runs, robots, 2)."""
-        return self._kept("positions", lambda: self._own(self.runs.positions))
+        return self._part("positions", lambda: self._own(self.runs.positions))
 
     @property
     def headings(self) -> Array:
         """Headings, rad, clockwise on the screen, not wrapped. Shape (runs, robots)."""
-        return self._kept("headings", lambda: self._own(self.runs.headings))
+        return self._part("headings", lambda: self._own(self.runs.headings))
 
     @property
     def velocities(self) -> Array:
         """Velocities in the last time step, mm/s. Shape (runs, robots, 2)."""
-        return self._kept("velocities", lambda: self._own(self.runs.velocities))
+        return self._part("velocities", lambda: self._own(self.runs.velocities))
 
     @property
     def leds(self) -> Array:
         """Colours of the LEDs, 0 to 255. Shape (runs, robots, 5, 3): head, front, right, back, left."""
-        return self._kept("leds", lambda: self._own(self.runs.leds))
+        return self._part("leds", lambda: self._own(self.runs.leds))
 
     def __getitem__(self, name: str) -> Array:
         """Return a value of all robots, see `find_value`. NaN where a robot has given none to a column."""
@@ -265,13 +281,13 @@ class SwarmArrays:
     def _read(self, name: str) -> Array:
         if name in OF_WORLD:
             return self._of_world(name)
-        if name == "messages" or PAYLOAD.fullmatch(name):
+        if has_payloads(self.known) and (name == "messages" or (PAYLOAD.fullmatch(name) and name not in self.known)):
             return self._of_messages(name)
         if self._brain is not None and name in OF_HOST:
             found: Array = getattr(self._brain, name)
             return found
         if name.startswith(USER_DATA):
-            whole = self._kept(USER_DATA, lambda: self._own(self.runs.user_data))
+            whole = self._part("user data", lambda: self._own(self.runs.user_data))
             found = field(whole, name.removeprefix(USER_DATA))
             return found.reshape(*found.shape[:2], -1) if found.ndim > 3 else found
         column = self.runs.column(name.removeprefix(COLUMN))
@@ -294,8 +310,8 @@ class SwarmArrays:
         A byte is the mean over the messages that are long enough to have it, 0 if there is none.
         """
         self._needs_messages = True
-        received = self._kept("received", lambda: self.brain.received)
-        place = self._kept("place", lambda: received["run"].astype(np.int64) * self.robots + received["robot"])
+        received = self._part("received", lambda: self.brain.received)
+        place = self._part("place", lambda: received["run"].astype(np.int64) * self.robots + received["robot"])
         shape = (len(self.runs), self.robots)
         places = math.prod(shape)
         if name == "messages":
@@ -324,6 +340,12 @@ class SwarmArrays:
             self._cache[name] = read()
         return self._cache[name]
 
+    def _part(self, name: str, read: Callable[[], Array]) -> Array:
+        """Return an array of now that values are made of, read once."""
+        if name not in self._parts:
+            self._parts[name] = read()
+        return self._parts[name]
+
     def before_step(self) -> None:
         """Forget the messages that robots have received until now, if they are looked at."""
         if self._needs_messages:
@@ -332,6 +354,7 @@ class SwarmArrays:
     def after_step(self) -> None:
         """Look at the robots anew."""
         self._cache.clear()
+        self._parts.clear()
 
     def check_robots(self, run: int) -> None:
         """Check that a run that has begun anew has the robots that it had.

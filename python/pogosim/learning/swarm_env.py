@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.arguments import shown
+from pogosim.arguments import shown, without_numpy
 from pogosim.learning.actions import Actions
 from pogosim.learning.configuration import ConfigurationFile
 from pogosim.learning.judging import End, OfSwarm, Reward, time_limit
@@ -62,8 +62,9 @@ def time_steps_of(decision_s: float, time_step_s: float) -> int:
 
 
 def as_array(values: list[Any]) -> Array:
-    """Return values of the runs as an array: of numbers, or else of objects."""
-    if all(isinstance(value, int | float | str) for value in values):
+    """Return values of the runs as an array: of numbers, texts or truth values alone, or else of objects."""
+    kinds = set(map(type, values))
+    if kinds <= {int, float} or kinds in ({str}, {bool}):
         return np.array(values)
     array = np.empty(len(values), dtype=object)
     array[:] = values
@@ -230,6 +231,8 @@ class SwarmEnv:
         self.decision_s = given.finite("decision_s", decision_s)
         task = Task(observation, actions, reward, end, given.text("category", category))
         limit_s = time_limit(end)
+        if math.isfinite(limit_s) and "simulation_time" in (set or {}):
+            raise ConfigurationError("set: simulation_time is that of `end` where this has a time: give one of them")
         settings = self._settings(program, task.category, limit_s) | checked_settings(set)
         count = given.integer("runs", runs, 1, MOST_RUNS)
         self._file = ConfigurationFile(configuration)
@@ -257,6 +260,7 @@ class SwarmEnv:
         self._has_begun = False
         self._episode_step = np.zeros(count, dtype=np.int64)
         self._is_over = np.zeros(count, dtype=np.bool_)
+        self._is_halfway = np.zeros(count, dtype=np.bool_)  # a step has not ended
         self._observation = np.zeros((count, self.robots, len(self.inputs)), np.float32)
 
     def _settings(self, program: PathLike | None, category: str, limit_s: float) -> dict[str, Any]:
@@ -317,11 +321,11 @@ class SwarmEnv:
         return sorted(set(chosen_rows("which", which, len(self), "run", "the environment has").tolist()))
 
     def _seeds(self, seed: Any, chosen: list[int]) -> dict[int, int]:
-        if isinstance(seed, list | tuple | range | np.ndarray):
+        if isinstance(seed, list | tuple | range) or (isinstance(seed, np.ndarray) and seed.ndim):
             if len(seed) != len(chosen):
                 raise ConfigurationError(f"seed: expected {len(chosen)}, one for each run, found {len(seed)}")
             return {run: given.integer("seed", one, least=0) for run, one in zip(chosen, seed, strict=True)}
-        first = given.integer("seed", seed, least=0)
+        first = given.integer("seed", without_numpy(seed), least=0)
         return {run: first + run for run in chosen}
 
     def _begin(self, chosen: list[int]) -> None:
@@ -337,7 +341,7 @@ class SwarmEnv:
         self.swarm.after_step()
         for run in chosen:
             self.swarm.check_robots(run)
-        self._episode_step[chosen], self._is_over[chosen] = 0, False
+        self._episode_step[chosen], self._is_over[chosen], self._is_halfway[chosen] = 0, False, False
         self._info = self._new_info()
         self._has_begun = all(episode.generator is not None for episode in self._episodes)
 
@@ -358,12 +362,22 @@ class SwarmEnv:
 
         Raises:
             ConfigurationError: Actions, observations or rewards are not finite numbers, or of another shape.
-            SimulationError: An episode has not begun, or is over.
+            SimulationError: An episode has not begun, or is over, or the last step was interrupted or failed: `reset`.
             ProgramFailedError: The program crashed, or did not return.
         """
         wanted = self._task.actions.checked(actions)
         ended = self._is_over.copy()
         self._check_begun(ended)
+        try:
+            return self._stepped(wanted, ended)
+        except BaseException:  # KeyboardInterrupt, too: runs may be at different times
+            self._is_halfway[:] = True
+            raise
+
+    def _stepped(
+        self, wanted: Array, ended: npt.NDArray[np.bool_]
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], Info]:
+        """Let robots act, and begin episodes anew."""
         self._task.actions.write(wanted)
         if not ended.all():
             self.swarm.before_step()
@@ -385,6 +399,9 @@ class SwarmEnv:
         """Check that an episode of each run has begun, and is not over where nothing begins it anew."""
         if not self._has_begun:
             raise SimulationError("reset the environment before its first step")
+        if self._is_halfway.any():
+            run = int(np.argmax(self._is_halfway))
+            raise SimulationError(f"the last step was interrupted or failed in run {run}: reset the environment")
         if self.autoreset == DISABLED and ended.any():
             run = int(np.argmax(ended))
             raise SimulationError(f"the episode of run {run} is over: reset it (autoreset is {DISABLED!r})")
@@ -412,7 +429,10 @@ class SwarmEnv:
         """Return what is told of the present episodes."""
         drawn = [episode.drawn for episode in self._episodes]
         randomized = {key: as_array([of_run.get(key) for of_run in drawn]) for key in self._randomization.keys}
-        return {"seed": np.array([episode.seed for episode in self._episodes]), "randomized": randomized}
+        seeds = np.array([episode.seed for episode in self._episodes])
+        for array in (seeds, *randomized.values()):
+            array.flags.writeable = False  # the same arrays are told at each step
+        return {"seed": seeds, "randomized": randomized}
 
     # ---- Going back
 
@@ -421,7 +441,10 @@ class SwarmEnv:
 
         Raises:
             ConfigurationError: A run cannot be saved, see `Simulation.save`: it records rows, for example.
+            SimulationError: The last step was interrupted or failed.
         """
+        if self._is_halfway.any():
+            raise SimulationError("the last step was interrupted or failed: reset the environment")
         episodes = [episode.copy() for episode in self._episodes]
         return EnvState(self.runs.save(), episodes, self._episode_step.copy(), self._is_over.copy())
 
@@ -439,6 +462,7 @@ class SwarmEnv:
         self.runs.restore(state.simulations)
         self._episodes = [episode.copy() for episode in state.episodes]
         self._episode_step, self._is_over = state.steps.copy(), state.is_over.copy()
+        self._is_halfway[:] = False
         self._info = self._new_info()
         self.swarm.after_step()
         return self._observe()
@@ -473,6 +497,9 @@ class SwarmEnv:
         """End all runs."""
         self.runs.close()
         self._file.close()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("environments cannot be copied or pickled: save() copies their state")
 
     def __enter__(self) -> SwarmEnv:
         return self
