@@ -62,18 +62,18 @@ def test_robot_at_full_power_gets_its_speed() -> None:
 
 
 def test_actions_are_cut_scaled_and_rounded() -> None:
-    actions = [("motors", -1023, 1023), "back_motor", ("led", 0, 255), Quantity("leds", 0, 255, is_scaled=False)]
+    actions = [("motors", -1023, 1023), "back_motor", Quantity("leds", 0, 255, is_scaled=False)]
     with hosted_env(actions=actions) as env:
         env.reset(seed=1)
-        wanted = np.zeros((1, ROBOTS, 2 + 1 + 3 + 15))
-        wanted[0, 0, :6] = [0.5, -7, 2, 1, 0, -1]
+        wanted = np.zeros((1, ROBOTS, 2 + 1 + 15))
+        wanted[0, 0, :3] = [0.5, -7, 2]
         with pytest.raises(pogosim.ConfigurationError, match="there twice"):
             hosted_env(actions=["motors", "motors"])
-        wanted[0, 0, 6:] = np.arange(15) + 0.4
+        wanted[0, 0, 3:] = np.arange(15) + 0.4
         env.step(wanted)
         brain = env.runs.brain("robots")
         assert brain.motors[0, 0].tolist() == [512, -1023, 1023]
-        assert brain.leds[0, 0].ravel().tolist() == list(range(15))  # the later entry of both
+        assert brain.leds[0, 0].ravel().tolist() == list(range(15))
         assert np.array_equal(env.swarm.leds[0, 0], brain.leds[0, 0])
 
 

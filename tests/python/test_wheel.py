@@ -121,15 +121,17 @@ def test_no_folder_of_the_machine_that_built_it_is_left_in_it(packages: Path) ->
 
 def test_program_gives_the_same_rows_as_with_the_build_in_the_tree(project: Path, tmp_path: Path) -> None:
     in_the_tree = compile_program(tmp_path / "first", TEMPLATE / "main.c")
-    tables = []
+    contents = set()
     for number, program in enumerate((project / "first", in_the_tree)):
         folder = tmp_path / str(number)
         folder.mkdir()
         result = run_command(program, folder, ["-c", str(write_scene(folder, {"simulation_time": 5.0}).name), "-q"])
         assert (result.code, result.errors) == (0, "")
         table = feather.read_table(folder / "data.feather")
-        tables.append(table.replace_schema_metadata({**table.schema.metadata, "program_commit": "that of each build"}))
-    assert tables[0].equals(tables[1], check_metadata=True)
+        table = table.replace_schema_metadata({**table.schema.metadata, b"program_commit": b"that of each build"})
+        feather.write_feather(table, folder / "same.feather", compression="uncompressed")
+        contents.add((folder / "same.feather").read_bytes())
+    assert len(contents) == 1
 
 
 def test_arenas_frames_and_window_work(project: Path, tmp_path: Path) -> None:
