@@ -62,6 +62,7 @@ class Array:
         for row in self.values.reshape(-1, self.values.shape[-1]):
             numbers = [f"{literal(value, self.kind)}," for value in row]
             if self.values.ndim == 2:
-                numbers[0], numbers[-1] = f"{{{numbers[0]}", f"{numbers[-1][:-1]}}},"
+                numbers[0] = f"{{{numbers[0]}"
+                numbers[-1] = f"{numbers[-1][:-1]}}},"  # of one column, that is the same word
             made += [f"    {line}" for line in filled(numbers)]
         return [*made, "};"]
