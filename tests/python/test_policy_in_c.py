@@ -11,6 +11,7 @@ import pytest
 from firmwares import firmware_in, project_of, run_firmware
 from pogosim.policy import Dense, Policy, PolicyError, network_of
 from pogosim.policy.c_header import header_of
+from pogosim.policy.c_text import Array
 from pogosim.policy.policy import NUMBERS
 from pogosim.policy.test_vector import vector_of
 from random_policies import ALL, INPUTS, observations, random_network
@@ -209,3 +210,9 @@ def test_prefix_that_is_no_name_in_c_is_refused(name: str) -> None:
     policy = Policy(random_network(ALL["plain"]))
     with pytest.raises(PolicyError, match="expected a name as in C"):
         header_of(policy, vector_of(policy, None), name, "a")
+
+
+@pytest.mark.parametrize(("columns", "row"), [(1, "    {1},"), (2, "    {1, 1},"), (3, "    {1, 1, 1},")])
+def test_rows_of_arrays_have_their_braces(columns: int, row: str) -> None:
+    made = Array("int8_t", "a", np.ones((2, columns))).lines()
+    assert made == [f"static int8_t const a[2][{columns}] = {{", row, row, "};"]
