@@ -13,8 +13,8 @@
 
 typedef struct {
     policy_value_t inputs[POLICY_INPUTS];  // sensor counts
-    bool is_right;                              // the self test has passed
-    uint8_t forward_dir[3];                     // calibration of this robot: direction bits [right, left, back]
+    bool is_right;                         // the self test has passed
+    uint8_t forward_dir[3];                // calibration of this robot: direction bits [right, left, back]
 } USERDATA;
 DECLARE_USERDATA(USERDATA);
 REGISTER_USERDATA(USERDATA);
