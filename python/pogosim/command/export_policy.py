@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pogosim.command.parser import Parser, complain, guarded, warn
-from pogosim.lines import say
+from pogosim.command.parser import Parser, complain, guarded, say_of_complete, warn
 from pogosim.outputs import OutputError, checked_output, leads_to, partial_output
 
 if TYPE_CHECKING:
@@ -157,12 +156,9 @@ def run(options: argparse.Namespace, prog: str) -> int:
     cost = "--no-cycles" if options.no_cycles else measured(header, policy, options.name)
     with partial_output(output) as partial:
         partial.write_text(header.text, encoding="utf-8")
-    try:
-        say(*report(header, policy, cost, observations, options.output))
-    except OSError as error:
-        return complain(
-            prog, f"{options.output} is complete, but the standard output cannot be written: {error.strerror}"
-        )
+    lines = report(header, policy, cost, observations, options.output)
+    if code := say_of_complete(prog, options.output, *lines):
+        return code
     program_bytes = header.constant_bytes + (0 if isinstance(cost, str) else cost.code_bytes)
     if program_bytes + header.state_bytes + header.stack_bytes > MEMORY_BYTES:
         warn(prog, f"the policy does not fit into the {MEMORY_BYTES // 1024} KiB of a robot")

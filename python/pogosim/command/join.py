@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, say_of_complete
 from pogosim.errors import ToolError
-from pogosim.lines import say
 from pogosim.outputs import told
 
 
@@ -35,12 +34,5 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim join") -> 
     except (pyarrow.ArrowException, MemoryError) as error:
         reason = "there is not enough memory for their rows" if isinstance(error, MemoryError) else error
         return complain(prog, f"the parts cannot be joined: {reason}")
-    try:
-        say(f"{options.output}: {joined.told}")
-        for path in joined.left_out:
-            say(f"{path}: not needed, other parts have its rows")
-    except OSError as error:
-        return complain(
-            prog, f"{options.output} is complete, but the standard output cannot be written: {error.strerror}"
-        )
-    return 0
+    left_out = (f"{path}: not needed, other parts have its rows" for path in joined.left_out)
+    return say_of_complete(prog, options.output, f"{options.output}: {joined.told}", *left_out)

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from pogosim.errors import ToolError
 from pogosim.extensions import said
-from pogosim.lines import say_error
+from pogosim.lines import say, say_error
 from pogosim.outputs import told
 
 
@@ -70,6 +70,15 @@ def complain(prog: str, problem: object) -> int:
     """Print what is wrong; returns the exit code: that of a ToolError, 2 otherwise."""
     say_error(f"{prog}: {problem}")
     return problem.exit_code if isinstance(problem, ToolError) else ToolError.exit_code
+
+
+def say_of_complete(prog: str, file: object, *lines: object) -> int:
+    """Print lines about a file that has been written; returns the exit code: a closed output does not harm the file."""
+    try:
+        say(*lines)
+    except OSError as error:
+        return complain(prog, f"{file} is complete, but the standard output cannot be written: {error.strerror}")
+    return 0
 
 
 def finite(text: str) -> float:

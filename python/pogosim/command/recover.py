@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-from pogosim.command.parser import Parser, complain
+from pogosim.command.parser import Parser, complain, say_of_complete
 from pogosim.errors import ToolError
-from pogosim.lines import say
 from pogosim.outputs import check_readable
 
 
@@ -33,8 +32,4 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim-recover") 
         reason = "there is not enough memory for its rows" if isinstance(error, MemoryError) else error
         return complain(prog, f"{options.file} cannot be recovered: {reason}")
     target = options.output or options.file
-    try:
-        say(f"{target}: {unfinished.up_to}")
-    except OSError as error:
-        return complain(prog, f"{target} is complete, but the standard output cannot be written: {error.strerror}")
-    return 0
+    return say_of_complete(prog, target, f"{target}: {unfinished.up_to}")

@@ -15,8 +15,6 @@ SIZE_PX = 64
 PLACE_PX = 0
 # What SDL takes when it reaches no display. A console would lose its text to a window, so none is opened there.
 NOWHERE = ("offscreen", "dummy", "evdev", "KMSDRM", "directfb")
-
-
 # What SDL loads when it takes X, on Linux.
 OF_X = (
     "libX11.so.6",
@@ -30,7 +28,7 @@ OF_X = (
 
 
 def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
-    """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's, "missing" libraries of X."""
+    """Return how far it came: "load" or "error" are what went wrong, "driver" is SDL's."""
     try:
         sdl = ctypes.CDLL(module)  # with the libraries that it needs
     except OSError as error:
@@ -43,15 +41,14 @@ def opened(module: str, is_loaded_only: bool) -> dict[str, str]:
     sdl.SDL_GetWindowSurface.restype = ctypes.c_void_p
     sdl.SDL_GetWindowSurface.argtypes = [ctypes.c_void_p]
     if sdl.SDL_InitSubSystem(VIDEO) != 0:
-        return {"error": sdl.SDL_GetError().decode(errors="replace"), "missing": missing_libraries()}
+        return {"error": sdl.SDL_GetError().decode(errors="replace")}
     driver = sdl.SDL_GetCurrentVideoDriver().decode(errors="replace")
     if driver in NOWHERE:
-        return {"driver": driver, "missing": missing_libraries()}
+        return {"driver": driver}
     window = sdl.SDL_CreateWindow(b"Pogosim", PLACE_PX, PLACE_PX, SIZE_PX, SIZE_PX, HIDDEN)
     # X draws without OpenGL, so a window is enough there.
     if not window or (driver == "wayland" and not sdl.SDL_GetWindowSurface(window)):
-        reason = sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"
-        return {"driver": driver, "error": reason, "missing": missing_libraries()}
+        return {"driver": driver, "error": sdl.SDL_GetError().decode(errors="replace") or "SDL gives no reason"}
     return {"driver": driver}
 
 
@@ -70,4 +67,7 @@ def is_loadable(library: str) -> bool:
 
 
 if __name__ == "__main__":
-    json.dump(opened(sys.argv[1], "--load-only" in sys.argv[2:]), sys.stdout)
+    found = opened(sys.argv[1], "--load-only" in sys.argv[2:])
+    if "error" in found or found.get("driver") in NOWHERE:
+        found["missing"] = missing_libraries()
+    json.dump(found, sys.stdout)

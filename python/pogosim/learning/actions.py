@@ -115,7 +115,7 @@ def check_apart(quantities: Sequence[Scaled]) -> None:
         taken[place] = name
 
 
-def whole_numbers(values: Array, kind: np.dtype[Any]) -> Array:
+def as_integers(values: Array, kind: np.dtype[Any]) -> Array:
     """Return rounded numbers that a type of integers can hold: its greatest may be none of 32 bits."""
     if kind.kind == "b":
         return np.rint(values)
@@ -210,7 +210,7 @@ class Actions:
         if member not in self._views:
             self._views[member] = [field(simulation.user_data, member) for simulation in self._swarm.runs]
         for view, of_run in zip(self._views[member], values, strict=True):
-            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else whole_numbers(of_run, view.dtype)).reshape(
+            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else as_integers(of_run, view.dtype)).reshape(
                 -1, *view.shape[1:]
             )
 
