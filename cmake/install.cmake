@@ -53,6 +53,11 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/emu" DESTINATION "${CMAKE_INSTALL_D
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/template_prj" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim"
     FILES_MATCHING PATTERN "Makefile" PATTERN "*.mk" PATTERN "*.c" PATTERN "*.yaml" PATTERN "*.md" PATTERN ".gitignore"
     PATTERN "build" EXCLUDE PATTERN "frames" EXCLUDE)
+# The pages that messages name, for `pogosim docs`; without pictures.
+file(GLOB pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md")
+install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim/docs")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/decisions" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim/docs"
+    FILES_MATCHING PATTERN "*.md")
 install(TARGETS pogosim_without_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 if(TARGET pogosim_shared_state)
     install(TARGETS pogosim_shared_state RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")

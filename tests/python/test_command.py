@@ -35,6 +35,7 @@ SUBCOMMANDS = (
     "fit-comm",
     "best-psend",
     "doctor",
+    "docs",
     "path",
 )
 
@@ -103,7 +104,9 @@ def test_each_subcommand_explains_itself_by_its_own_name(name: str, tmp_path: Pa
     assert result.output.startswith(f"usage: pogosim {name}")
 
 
-@pytest.mark.parametrize("name", ["new", "picture", "recover", "arena", "fit-comm", "best-psend", "doctor", "path"])
+@pytest.mark.parametrize(
+    "name", ["new", "picture", "recover", "arena", "fit-comm", "best-psend", "doctor", "docs", "path"]
+)
 def test_each_subcommand_refuses_unknown_options_by_its_own_name(name: str, tmp_path: Path) -> None:
     result = command(tmp_path, name, "a", "b", "c", "--nonsense")
     assert result.code == 2

@@ -57,6 +57,7 @@ COMMANDS = Table(
         "fit-comm": Own("pogosim.communication.fit_command:main", "fit a law of reception to measurements"),
         "best-psend": Own("pogosim.communication.sending:main", "compute how often robots should send"),
         "doctor": Own("pogosim.command.doctor:main", "say what works on this machine, and what is missing for what"),
+        "docs": Own("pogosim.command.docs:main", "show a page of the documentation, such as those that messages name"),
         "path": Own("pogosim.command.path:main", "print the folder of the simulator, POGOSIM_DIR of Makefiles"),
     },
     is_shared=False,  # commands start at once
