@@ -10,6 +10,7 @@ namespace {
 TEST(NumberFrom, TextThatIsNoNumberAsAWholeIsNone) {
     EXPECT_DOUBLE_EQ(number_from("-2.5e3"), -2500.0);
     EXPECT_TRUE(std::isinf(number_from("1e400")));
+    EXPECT_EQ(number_from("1e-400"), 0.0);  // as in YAML and in Python: the nearest number there is
     for (auto const* text : {"", "one", "1,5", "1 "}) {
         EXPECT_TRUE(std::isnan(number_from(text))) << text;
     }

@@ -230,6 +230,15 @@ def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_pat
     assert refusal(command(tmp_path, "run", *arguments)) == f"pogosim run: {said}"
 
 
+def test_run_refuses_programs_of_other_machines(tmp_path: Path) -> None:
+    mach_o, elf = b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01", b"\x7fELF\x02\x01\x01" + bytes(9) + b"\x02\x00\xef\xbe"
+    for name, beginning in (("of_a_mac", mach_o), ("of_an_unknown_processor", elf), ("text", b"text\n")):
+        (tmp_path / name).write_bytes(beginning + bytes(64))
+        (tmp_path / name).chmod(0o755)
+        why = "it is no program, or one for another kind of machine; build it on this one"
+        assert refusal(command(tmp_path, "run", f"./{name}")) == f"pogosim run: cannot run {name}: {why}"
+
+
 def test_run_without_a_program_says_how_to_name_one(tmp_path: Path) -> None:
     said = refusal(command(tmp_path, "run"))
     assert said.startswith(

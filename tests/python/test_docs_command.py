@@ -50,7 +50,7 @@ def test_the_place_is_printed_on_request(tmp_path: Path) -> None:
     assert docs(tmp_path, "--path", "window").output == f"{DOCS / 'window.md'}\n"
 
 
-def test_a_reader_that_leaves_early_is_no_error(tmp_path: Path) -> None:
+def test_a_reader_that_leaves_early_is_no_error() -> None:
     piped = f"set -o pipefail; {' '.join(COMMAND)} | head -n 1"
     done = subprocess.run(
         ["bash", "-c", piped], capture_output=True, text=True, env=ENVIRONMENT, check=False, timeout=60

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import functools
 import os
 import shlex
@@ -211,4 +212,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
     try:
         os.execv(command[0], command)
     except OSError as error:
-        return complain(prog, f"cannot run {command[0]}: {error.strerror}")
+        is_other = error.errno == errno.ENOEXEC
+        why = (
+            "it is no program, or one for another kind of machine; build it on this one" if is_other else error.strerror
+        )
+        return complain(prog, f"cannot run {command[0]}: {why}")
