@@ -19,7 +19,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-#pragma GCC visibility push(default)
 
 /// A run.
 typedef struct pogosim_run pogosim_run;
@@ -29,6 +28,8 @@ typedef struct pogosim_state pogosim_state;
 
 /// Threads on which many runs go on.
 typedef struct pogosim_threads pogosim_threads;
+
+#pragma GCC visibility push(default)  // of functions: what these structs have in C++ stays inside
 
 /// As exit codes of a program. After anything but POGOSIM_OK and POGOSIM_OVER of a step, the run is over and its files
 /// are complete.

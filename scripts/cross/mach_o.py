@@ -11,6 +11,7 @@ from typing import NamedTuple
 MAGIC, UNIVERSAL = 0xFEEDFACF, 0xCAFEBABE
 PROCESSORS = {"macos-x86_64": 0x01000007, "macos-arm64": 0x0100000C}
 SYMBOLS, NAME, RPATH, LEAST_MACOS, BUILD_VERSION = 0x2, 0xD, 0x8000001C, 0x24, 0x32
+SIGNATURE = 0x1D
 LIBRARIES = {0xC, 0x80000018, 0x8000001F, 0x20, 0x80000023}
 OF_DEBUGGER, WHERE, IN_SECTION, ABSOLUTE, EXTERNAL, PRIVATE = 0xE0, 0x0E, 0x0E, 0x02, 0x01, 0x10
 
@@ -24,6 +25,7 @@ class MachO(NamedTuple):
     rpaths: list[str]
     shown: set[str]
     used: list[tuple[str, str]]  # a symbol, and the library it is from
+    is_signed: bool = False
 
 
 def part_for(content: bytes, processor: int) -> bytes:
@@ -68,6 +70,8 @@ def read(path: Path, processor: int) -> MachO:
         elif kind in (LEAST_MACOS, BUILD_VERSION):
             (version,) = struct.unpack_from("<I", content, place + (8 if kind == LEAST_MACOS else 12))
             found = found._replace(macos=(version >> 16, version >> 8 & 0xFF))
+        elif kind == SIGNATURE:
+            found = found._replace(is_signed=True)
         elif kind == SYMBOLS:
             symbols = struct.unpack_from("<3I", content, place + 8)
     table, count, names = symbols

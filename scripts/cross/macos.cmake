@@ -14,7 +14,10 @@ set(CMAKE_AR "${pogosim_tools}/ar" CACHE FILEPATH "" FORCE)
 set(CMAKE_RANLIB "${pogosim_tools}/ranlib" CACHE FILEPATH "" FORCE)
 # install_name_tool, with which CMake would change paths when it installs: it is not there, so they are the final ones at once.
 set(CMAKE_INSTALL_NAME_TOOL /bin/true CACHE FILEPATH "" FORCE)
-set(CMAKE_STRIP /bin/true CACHE FILEPATH "" FORCE)  # that of Linux knows no such files
+set(CMAKE_STRIP /bin/true CACHE FILEPATH "" FORCE)  # that of Linux knows no such files: the linker leaves out what it would
+foreach(kind IN ITEMS SHARED MODULE EXE)
+    set(CMAKE_${kind}_LINKER_FLAGS_INIT "-s")
+endforeach()
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 set(CMAKE_BUILD_WITH_INSTALL_NAME_DIR ON)
 set(CMAKE_INSTALL_NAME_DIR "@rpath")

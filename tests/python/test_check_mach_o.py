@@ -28,30 +28,33 @@ def text_command(kind: int, text: str, numbers: int = 0) -> bytes:
 
 def written(
     file: Path,
-    name: str = "",
+    name: str = "@rpath/libx.dylib",
     libraries: Sequence[str] = (SYSTEM,),
     rpaths: Sequence[str] = (),
     shown: Sequence[str] = (),
     used: Sequence[tuple[str, int]] = (),
     macos: int = MACOS_12,
     processor: int = ARM64,
+    signed: bool = True,
 ) -> Path:
     """Write a library of macOS, and return its file.
 
     Args:
         file: where to write.
-        name: by which others look for it; empty: none.
+        name: by which others look for it.
         libraries: that it needs.
         rpaths: where it looks for them.
         shown: symbols that others may use.
         used: symbols of its libraries, each with the number of the library, from 1; 0: of none.
         macos: oldest version that it is for.
         processor: ARM64 or X86_64.
+        signed: whether it says where its signature is.
     """
-    commands = [text_command(0xD, name, 3)] if name else []
+    commands = [text_command(0xD, name, 3)]
     commands += [text_command(0xC, library, 3) for library in libraries]
     commands += [text_command(0x8000001C, rpath) for rpath in rpaths]
     commands.append(struct.pack("<6I", 0x32, 24, 1, macos, macos, 0))
+    commands += [struct.pack("<4I", 0x1D, 16, 0, 0)] if signed else []
     table, names = b"", b"\0"
     for symbol, kind, section, library in [
         *((symbol, 0x0F, 1, 0) for symbol in shown),
@@ -99,7 +102,9 @@ def test_a_file_that_finds_all_that_it_uses_is_as_expected(tmp_path: Path) -> No
     ("problem", "changed"),
     [
         ("it is for macOS 13.1 and later, expected 11 or 12", {"macos": 13 << 16 | 1 << 8}),
-        ("it is looked for as /tmp/libx.dylib, expected @rpath/...", {"name": "/tmp/libx.dylib"}),
+        ("it is looked for as '/tmp/libx.dylib', expected @rpath/...", {"name": "/tmp/libx.dylib"}),
+        ("it is looked for as '', expected @rpath/...", {"name": ""}),
+        ("it is not signed, and Macs with Apple silicon load no such file", {"signed": False}),
         ("it looks for libraries in /tmp/lib, expected @loader_path/...", {"rpaths": ("/tmp/lib",)}),
         (
             "it needs /opt/libfar.dylib, which is neither the system's nor there",
