@@ -126,7 +126,7 @@ static int32_t const policy_test_outputs[4][2] = {
 
 // ---- Functions of policy_step() alone
 
-static inline int32_t policy_cut(int32_t value, int32_t least, int32_t most) {
+static inline policy_value_t policy_cut(policy_value_t value, policy_value_t least, policy_value_t most) {
     return value < least ? least : value > most ? most : value;
 }
 

@@ -62,9 +62,9 @@ def test_observations_beyond_the_range_of_the_inputs_are_told(tmp_path: Path) ->
         (
             "plain",
             rows,
-            r"; in 4 of the observations \S+ from floats on average, \S+ at most; 1 of 5 observations are ",
+            r"; in the 5 observations \S+ from floats on average, \S+ at most; 1 of 5 observations are beyond the "
+            r"range of the inputs, and are cut to it\n",
         ),
-        ("plain", rows[1:2], r"range; 1 of 1 observations are beyond the range of the inputs, and are cut to it\n"),
         ("plain", rows[2:], r"; in the 3 observations \S+ from floats on average, \S+ at most\n"),
         ("gated", rows, r"of exact arithmetic, for a step from the same state\n"),
     ):

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from pogosim.policy import Dense, Policy, PolicyError, float_arithmetic, network_of, tanh_table
 from pogosim.policy import fixed_point as fixed_point_module
 from pogosim.policy.fixed_point import MOST_SUM, MOST_VALUE, ONE
+from pogosim.policy.policy import NUMBERS
 from random_policies import ALL, Kind, exact_step, observations, random_network
 
 ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")
@@ -169,9 +170,33 @@ def test_swarm_of_another_size_is_refused_until_the_policy_forgets() -> None:
     assert policy.step(observations(5)).shape == (5, 2)
 
 
-def test_inputs_beyond_their_range_count_as_its_ends() -> None:
-    policy = Policy(random_network(ALL["plain"]), numbers="int16")
+@pytest.mark.parametrize("numbers", NUMBERS)
+def test_inputs_beyond_their_range_count_as_its_ends(numbers: str) -> None:
+    policy = Policy(random_network(ALL["plain"]), numbers=numbers)
     np.testing.assert_array_equal(policy.step([9999.0, -1e18, 5]), policy.step([3000, 0, 5]))
+
+
+def test_inputs_are_cut_to_the_range_of_observations_only_where_the_policy_has_none() -> None:
+    layers = [Dense(np.eye(3), np.zeros(3), "identity")]
+    network = network_of(layers, input_low=[np.nan, -5, np.nan], input_high=[np.nan, 5, np.nan])
+    np.testing.assert_array_equal(Policy(network).step([-1e6, 1e6, 1e30]), np.array([-1e6, 5, 1e30], np.float32))
+    for numbers in NUMBERS:
+        policy = Policy(network, numbers=numbers, calibration=[[0, -1, -30], [100, 1, 30]])
+        np.testing.assert_array_equal(policy.network.input_range, [[0, 100], [-5, 5], [-30, 30]])
+        np.testing.assert_array_equal(policy.step([-(10**6), 10**6, 10**9]), [0, 5, 30])
+
+
+@given(chains(), st.integers(0, 10**6), st.sampled_from(("int8", "int16")))
+@settings(max_examples=30, deadline=None)
+def test_floats_and_whole_numbers_agree_beyond_the_range_as_within(
+    kinds: Sequence[Kind], seed: int, numbers: str
+) -> None:
+    network = random_network(kinds, seed, 0.3)
+    whole, floats = Policy(network, numbers=numbers), Policy(network)
+    assert whole.fixed is not None
+    rows = observations(40, seed) * 10 - 15000
+    off = np.abs(whole.step(rows) - floats.step(rows)).max(axis=0)
+    assert (off <= whole.fixed.error_bound * 1.001 + 0.01).all()
 
 
 def test_biases_and_scales_of_the_last_linear_layer_are_exact_where_they_can_be() -> None:

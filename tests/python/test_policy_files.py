@@ -17,7 +17,7 @@ import pytest
 import random_policies
 from onnx import TensorProto, helper, numpy_helper
 from pogosim.policy import Policy, PolicyError, network_of
-from pogosim.policy.calibration import ranges_of, read_observations
+from pogosim.policy.calibration import check_whole, read_observations, with_ranges
 from pogosim.policy.network import Dense
 from pogosim.policy.npz_file import arrays_of, read_npz
 from pogosim.policy.onnx_file import read_onnx
@@ -498,4 +498,4 @@ def test_files_without_observations_are_refused(tmp_path: Path) -> None:
 def test_ranges_that_observations_do_not_tell_are_refused(rows: Any, said: str) -> None:
     layer = Dense(np.ones((1, random_policies.INPUTS), np.float32), np.zeros(1, np.float32), "tanh")
     with pytest.raises(PolicyError, match=said):
-        ranges_of(network_of([layer]), np.array(rows, float))
+        check_whole(with_ranges(network_of([layer]), np.array(rows, float)), np.array(rows, float))

@@ -20,8 +20,8 @@ EPILOG = """POLICY is an .npz file of NumPy, an .onnx file, or a .pt file with t
 layers that see all values before them, Elman layers and GRUs. docs/policy_export.md lists the arrays and operators.
 
 float needs no other file. int16 and int8 compute in whole numbers, which robots do ten times as fast or more; they need
-the range of each input, from observations of a run: an .npz or .npy file with an array of shape (..., inputs), or a
-data file with a column for each input."""
+the range of each input, that of the policy or else of observations of a run: an .npz or .npy file with an array of
+shape (..., inputs), or a data file with a column for each input. Inputs are cut to their range, in floats as well."""
 NUMBERS = ("float", "int16", "int8")
 ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")
 MEMORY_BYTES = 128 * 1024  # of a robot, for program, variables and stack
@@ -85,6 +85,8 @@ def accuracy(policy: Policy, observations: object) -> list[str]:
 
     What recurrent policies remember is left out of the latter: observations need not follow each other.
     """
+    from dataclasses import replace
+
     import numpy as np
 
     from pogosim.policy.policy import Policy as Stepped
@@ -97,14 +99,11 @@ def accuracy(policy: Policy, observations: object) -> list[str]:
     text = f"outputs within {bounds[worst]:.3g} ({policy.network.output_names[worst]}) of exact arithmetic, for {where}"
     if observations is not None and not policy.network.is_recurrent:
         rows = np.rint(np.asarray(observations))
-        is_within = ((rows >= policy.fixed.input_low) & (rows <= policy.fixed.input_high)).all(axis=1)
-        beyond = int((~is_within).sum())
-        where = f"in the {len(rows)} observations" if not beyond else f"in {len(rows) - beyond} of the observations"
-        if is_within.any():
-            off = np.abs(policy.step(rows[is_within]) - Stepped(policy.network).step(rows[is_within]))
-            policy.reset()
-            text += f"; {where} {off.mean():.3g} from floats on average, {off.max():.3g} at most"
-        if beyond:
+        ends = np.stack([policy.fixed.input_low, policy.fixed.input_high], axis=1).astype(np.float32)
+        off = np.abs(policy.step(rows) - Stepped(replace(policy.network, input_range=ends)).step(rows))
+        policy.reset()
+        text += f"; in the {len(rows)} observations {off.mean():.3g} from floats on average, {off.max():.3g} at most"
+        if beyond := int(((rows < ends[:, 0]) | (rows > ends[:, 1])).any(axis=1).sum()):
             text += f"; {beyond} of {len(rows)} observations are beyond the range of the inputs, and are cut to it"
     return [f"accuracy         {text}"]
 

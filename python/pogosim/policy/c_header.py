@@ -23,6 +23,7 @@ from pogosim.policy.test_vector import TestVector
 
 WIDTH = 120
 MOST_WEIGHTS = 1 << 18  # several times as many as a robot has memory for
+RANGE = "Inputs are cut to this range."
 FLOAT_TOLERANCE = 1e-4  # of the greatest output: compilers may contract operations
 # Multiplications of a call of a function, at most.
 MULTIPLICATIONS = {
@@ -182,14 +183,20 @@ def float_parts(policy: Policy) -> Parts:
     """Return the parts of a policy in floats."""
     network = policy.network
     parts = Parts()
-    parts.arrays = [
+    given = "inputs[i]"
+    if network.has_range:
+        low, high = network.input_ends
+        parts.arrays += [Array("float", "@input_low", low, RANGE), Array("float", "@input_high", high)]
+        parts.functions.add("cut")
+        given = "@cut(inputs[i], @input_low[i], @input_high[i])"
+    parts.arrays += [
         Array("float", "@input_offset", network.input_offset),
         Array("float", "@input_scale", network.input_scale),
     ]
     parts.locals.append((f"float scaled[{network.inputs}];", 4 * network.inputs))
     parts.body += [
         f"    for (uint16_t i = 0; i < {network.inputs}; i++) {{",
-        "        scaled[i] = (inputs[i] - @input_offset[i]) * @input_scale[i];",
+        f"        scaled[i] = ({given} - @input_offset[i]) * @input_scale[i];",
         "    }",
     ]
     source, before = "scaled", network.inputs
@@ -217,7 +224,7 @@ def fixed_parts(policy: Policy) -> Parts:
     network = policy.network
     parts = Parts(functions={"scaled"})
     parts.arrays = [
-        Array("int32_t", "@input_low", fixed.input_low, "Inputs are cut to this range."),
+        Array("int32_t", "@input_low", fixed.input_low, RANGE),
         Array("int32_t", "@input_high", fixed.input_high),
         *affine_arrays("input", fixed.input_map),
     ]
@@ -251,7 +258,7 @@ def fixed_parts(policy: Policy) -> Parts:
 
 def functions_of(parts: Parts, is_fixed: bool) -> list[str]:
     """Return the functions that the step calls."""
-    activations = parts.functions - {"scaled", "gru", "outputs"}
+    activations = parts.functions - {"cut", "scaled", "gru", "outputs"}
     if not is_fixed:
         layers = [OF_FLOAT_LAYER.format(activation=name) for name in sorted(activations)]
         return [*needed(parts.functions, OF_FLOATS), ADD_PRODUCT, *layers]
@@ -284,7 +291,7 @@ def comments_of_inputs(policy: Policy) -> list[str]:
             text += f", cut to {fixed.input_low[index]} to {fixed.input_high[index]}"
         elif not np.isnan(network.input_range[index, 0]):
             least, most = network.input_range[index]
-            text += f", from {least:.6g} to {most:.6g} when it was made"
+            text += f", cut to {least:.6g} to {most:.6g}"
         made.append(text)
     return made
 

@@ -27,9 +27,15 @@ HORNER = "\n".join(
     f"    power = power * fraction + {literal(coefficient, 'float')};" for coefficient in POWER_OF_TWO[1:]
 )
 
+CUT = """static inline @value_t @cut(@value_t value, @value_t least, @value_t most) {
+    return value < least ? least : value > most ? most : value;
+}
+"""
+
 # ---- Floats. The exponential function is 2^whole times a polynomial of 2^fraction; no C library is needed.
 
 OF_FLOATS = {
+    "cut": CUT,
     "exp": f"""// exp(x) of numbers up to 0.
 static inline float @exp_of_negative(float x) {{
     union {{ uint32_t bits; float value; }} two_to_whole;
@@ -87,10 +93,7 @@ OF_FLOAT_LAYER = """static inline void @next_{activation}(float const* sums, uin
 # ---- Whole numbers
 
 OF_INTEGERS = {
-    "cut": """static inline int32_t @cut(int32_t value, int32_t least, int32_t most) {
-    return value < least ? least : value > most ? most : value;
-}
-""",
+    "cut": CUT,
     "shifted": """// value / 2^shift, rounded down; C leaves the shift of negative numbers to the compiler.
 static inline int32_t @shifted(int32_t value, int shift) {
     return value < 0 ? ~(~value >> shift) : value >> shift;
@@ -160,8 +163,8 @@ OF_INTEGER_LAYER = """static inline void @next_{activation}(
 
 # What each function calls, so that it is emitted before it.
 CALLS = {
-    "tanh": ("exp", "cut", "shifted", "scaled"),
-    "sigmoid": ("exp", "tanh", "cut", "shifted", "scaled"),
+    "tanh": ("exp", "scaled"),
+    "sigmoid": ("exp", "tanh", "scaled"),
     "gru": ("sigmoid", "tanh"),
     "relu": ("scaled",),
     "identity": ("scaled",),

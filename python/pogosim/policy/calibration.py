@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import MOST_FLOAT, Network
 from pogosim.policy.npz_file import WRONG_FILE, read_arrays
 
+FEWEST_WHOLE = 16  # whole numbers in the range of an input that is no whole number in a run
 OBSERVATIONS = "observations"  # the array of a .npz file that has several
 WANTED = (
     "expected an .npz or .npy file with an array of shape (..., inputs), or a data file with a column for each input"
@@ -87,23 +89,16 @@ def checked_observations(values: npt.ArrayLike, network: Network, place: str) ->
     return rows
 
 
-def ranges_of(network: Network, observations: npt.NDArray[np.float64] | None) -> npt.NDArray[np.float64]:
-    """Return the range of each input. Shape (inputs, 2).
-
-    That which the policy gives comes first; else that of the observations, shape (observations, inputs).
+def with_ranges(network: Network, observations: npt.NDArray[np.float64]) -> Network:
+    """Return a policy whose inputs without a range have that of observations, shape (observations, inputs).
 
     Raises:
-        PolicyError: That of an input is unknown, or its observations are all the same.
+        PolicyError: The observations of an input without a range are all the same.
     """
-    made = network.input_range.astype(np.float64)
+    made = network.input_range.copy()
     for index, name in enumerate(network.input_names):
         if not np.isnan(made[index, 0]):
             continue
-        if observations is None:
-            raise PolicyError(
-                f"the range of the input {name} is unknown; expected observations of a run (--calibration FILE), or "
-                "input_low and input_high in the policy"
-            )
         own = observations[:, index]
         made[index] = own.min(), own.max()
         if made[index, 0] == made[index, 1]:
@@ -111,14 +106,19 @@ def ranges_of(network: Network, observations: npt.NDArray[np.float64] | None) ->
                 f"the input {name} is {own[0]:g} in all {len(own)} observations, so its range is unknown; expected "
                 "observations in which it changes, or input_low and input_high in the policy"
             )
-        steps = np.ceil(made[index, 1]) - np.floor(made[index, 0])
-        if steps < FEWEST_WHOLE and not np.array_equal(own, np.rint(own)):
+    return replace(network, input_range=made)
+
+
+def check_whole(network: Network, observations: npt.NDArray[np.float64]) -> None:
+    """Check that inputs which are no whole numbers in a run can be rounded. Shape (observations, inputs).
+
+    Raises:
+        PolicyError: The range of one has few whole numbers.
+    """
+    for name, (least, most), own in zip(network.input_names, network.input_range, observations.T, strict=True):
+        if np.ceil(most) - np.floor(least) < FEWEST_WHOLE and not np.array_equal(own, np.rint(own)):
             raise PolicyError(
-                f"the input {name} ranges from {made[index, 0]:g} to {made[index, 1]:g}, with fractions; a policy in "
-                "whole numbers takes whole inputs: give it in a smaller unit, such as counts of the sensor, and scale "
-                "it by input_offset and input_scale"
+                f"the input {name} ranges from {least:g} to {most:g}, with fractions; a policy in whole numbers takes "
+                "whole inputs: give it in a smaller unit, such as counts of the sensor, and scale it by input_offset "
+                "and input_scale"
             )
-    return made
-
-
-FEWEST_WHOLE = 16  # whole numbers in the range of an input that is no whole number in a run

@@ -129,14 +129,19 @@ def scaled(sums: Integers, shift: Integers, most: int) -> Integers:
     return np.where(shift < 0, cut, np.clip(shifted, -most, most))
 
 
-def whole_range(network: Network, ranges: Floats) -> tuple[Integers, Integers]:
+def whole_range(network: Network) -> tuple[Integers, Integers]:
     """Return the ends of the ranges of inputs as whole numbers.
 
     Raises:
-        PolicyError: A range is too large.
+        PolicyError: A range is unknown or too large.
     """
-    low, high = np.floor(ranges[:, 0]), np.ceil(ranges[:, 1])
+    low, high = np.floor(network.input_range[:, 0]).astype(float), np.ceil(network.input_range[:, 1]).astype(float)
     for name, least, most in zip(network.input_names, low, high, strict=True):
+        if np.isnan(least):
+            raise PolicyError(
+                f"the range of the input {name} is unknown; expected observations of a run (--calibration FILE), or "
+                "input_low and input_high in the policy"
+            )
         if max(abs(least), abs(most)) > MOST_SUM or most - least > MOST_SPAN:
             raise PolicyError(
                 f"the input {name} ranges from {least:.10g} to {most:.10g}; in whole numbers it may range over "
@@ -434,18 +439,18 @@ def with_outputs_in_weights(network: Network) -> Layer:
     return Dense(weights, layer.bias.astype(float) * scale + offset, "identity")
 
 
-def fixed_point(network: Network, ranges: Floats, bits: int = 16) -> FixedNetwork:
+def fixed_point(network: Network, bits: int = 16) -> FixedNetwork:
     """Make whole numbers of a policy.
 
     Args:
         network: The policy.
-        ranges: Least and greatest value of each input, in its unit. Shape (inputs, 2).
         bits: Bits of a weight, 8 or 16.
 
     Raises:
-        PolicyError: Its numbers are too large, inputs hardly change, or the values of a layer have no bounds.
+        PolicyError: The range of an input is unknown, its numbers are too large, inputs hardly change, or the values of
+            a layer have no bounds.
     """
-    low, high = whole_range(network, ranges)
+    low, high = whole_range(network)
     input_map, values = inputs_of(network, low, high)
     input_bits = values.bits
     layers: list[FixedLayer] = []

@@ -70,6 +70,11 @@ ACTIVATE: dict[str, Callable[[Floats], Floats]] = {
 }
 
 
+def cut(x: Floats, least: Floats, most: Floats) -> Floats:
+    """Cut numbers to ranges. Shapes (..., values), (values,), (values,)."""
+    return np.where(x < least, least, np.where(x > most, most, x))
+
+
 def add_product(sums: Floats, weights: Floats, values: Floats) -> Floats:
     """Return sums + weights values, added one after the other. Shapes (..., rows), (rows, columns), (..., columns)."""
     for column, of_column in enumerate(weights.T):
@@ -122,7 +127,7 @@ def step(network: Network, observation: npt.NDArray[np.float32], state: Floats) 
         observation: Shape (..., inputs), in their units.
         state: Shape (..., values that are remembered).
     """
-    values = (observation - network.input_offset) * network.input_scale
+    values = (cut(observation, *network.input_ends) - network.input_offset) * network.input_scale
     states: list[Floats] = []
     begin = 0
     for layer in network.layers:

@@ -1,8 +1,9 @@
 """A policy as data: the layers of a small neural network, and how its inputs and outputs are scaled.
 
-    normalised input = (input - input_offset) * input_scale
+    normalised input = (input, cut to its range - input_offset) * input_scale
     output           = value of the last layer * output_scale + output_offset
 
+An input whose range is unknown is not cut.
 Inputs are in units of the robot's functions, such as counts of a photosensor; so are outputs, such as powers of motors.
 Numbers are floats of 32 bits, as on the robot.
 """
@@ -117,7 +118,8 @@ class Network:
         input_scale: Shape (inputs,).
         output_scale: Shape (outputs,).
         output_offset: Shape (outputs,).
-        input_range: Least and greatest value of each input, in its unit; NaN where they are unknown. Shape (inputs, 2).
+        input_range: Least and greatest value of each input, in its unit, to which it is cut; NaN where they are
+            unknown. Shape (inputs, 2).
     """
 
     layers: tuple[Layer, ...]
@@ -138,6 +140,18 @@ class Network:
     def outputs(self) -> int:
         """Number of outputs."""
         return len(self.output_names)
+
+    @property
+    def has_range(self) -> bool:
+        """Whether the range of an input is known."""
+        return not np.isnan(self.input_range).all()
+
+    @property
+    def input_ends(self) -> tuple[Floats, Floats]:
+        """What inputs are cut to: their range, or all floats of 32 bits where it is unknown. Shapes (inputs,)."""
+        everything = np.array([-MOST_FLOAT, MOST_FLOAT], np.float32)
+        low, high = np.where(np.isnan(self.input_range), everything, self.input_range).T
+        return low, high
 
     @property
     def is_recurrent(self) -> bool:

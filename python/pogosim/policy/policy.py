@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.policy import fixed_point, float_arithmetic
-from pogosim.policy.calibration import checked_observations, ranges_of
+from pogosim.policy.calibration import check_whole, checked_observations, with_ranges
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.fixed_point import FixedNetwork
 from pogosim.policy.network import Network
@@ -25,7 +25,7 @@ class Policy:
     (-ffp-contract). In whole numbers, they always are.
 
     Attributes:
-        network: Its layers and scaling.
+        network: Its layers and scaling, with the ranges of the inputs.
         fixed: The same in whole numbers; None: in floats.
         state: What recurrent layers remember. Shape (..., values), as the observations of the last step; None before.
     """
@@ -36,20 +36,25 @@ class Policy:
         Args:
             network: Its layers and scaling.
             numbers: float; int16 or int8: whole numbers, with weights of 16 or 8 bits.
-            calibration: Observations of a run, for the ranges of inputs that the policy does not give, of shape
-                (..., inputs); for whole numbers only.
+            calibration: Observations of a run, shape (..., inputs), for the ranges of inputs that the network does not
+                give. Whole numbers need all ranges; floats do not cut inputs without one.
 
         Raises:
-            PolicyError: There is no such kind of numbers, or the policy cannot be in whole numbers.
+            PolicyError: There is no such kind of numbers, the observations are for another policy, or the policy cannot
+                be in whole numbers.
         """
         self.network = network
         self.state: npt.NDArray[Any] | None = None
         self.fixed: FixedNetwork | None = None
         if numbers not in NUMBERS:
             raise PolicyError(f"numbers: expected one of {', '.join(NUMBERS)}, found {numbers!r}")
+        if calibration is not None:
+            rows = checked_observations(calibration, network, "calibration")
+            self.network = with_ranges(network, rows)
         if numbers != "float":
-            rows = None if calibration is None else checked_observations(calibration, network, "calibration")
-            self.fixed = fixed_point.fixed_point(network, ranges_of(network, rows), int(numbers.removeprefix("int")))
+            if calibration is not None:
+                check_whole(self.network, rows)
+            self.fixed = fixed_point.fixed_point(self.network, int(numbers.removeprefix("int")))
 
     @classmethod
     def load(cls, file: str | Path, *, numbers: str = "float", calibration: npt.ArrayLike | None = None) -> Policy:
