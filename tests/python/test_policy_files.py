@@ -485,6 +485,18 @@ def test_files_without_observations_are_refused(tmp_path: Path) -> None:
             read_observations(tmp_path / name, network)
 
 
+def test_input_that_would_be_rounded_to_few_numbers_is_for_floats_alone() -> None:
+    """Such as one of an environment that a robot has scaled to -1 to 1 by itself; a switch is 0 or 1."""
+    network = network_of([Dense(np.ones((1, 1)), np.zeros(1), "tanh")], input_low=-1, input_high=1)
+    assert Policy(network).step([0.3]) == pytest.approx(np.tanh(0.3))
+    said = "the input x0 ranges from -1 to 1, which has few whole numbers; .* show observations of a run"
+    with pytest.raises(PolicyError, match=said):
+        Policy(network, numbers="int16")
+    with pytest.raises(PolicyError, match="the input x0 ranges from -1 to 1, with fractions"):
+        Policy(network, numbers="int16", calibration=[[0.0], [0.5]])
+    assert Policy(network, numbers="int16", calibration=[[0], [1]]).step([1]) == 1
+
+
 @pytest.mark.parametrize(
     ("rows", "said"),
     [

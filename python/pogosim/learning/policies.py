@@ -1,11 +1,6 @@
-"""What a file of a policy says of the environment that it is for.
+"""What a file of a policy says of the environment that it is for: names, scales and ranges of inputs and outputs.
 
-A policy is arrays in an .npz file of NumPy: its weights, as it likes, and these, which say what its numbers are:
-
-    input_names, output_names    texts: names as in C, such as photosensors_0
-    input_offset, input_scale    (inputs,): what the policy sees is (input - input_offset) * input_scale
-    output_scale, output_offset  (outputs,): output = what the policy gives * output_scale + output_offset
-    input_low, input_high        (inputs,): the ranges of inputs
+They are the arrays of that name in the table of docs/policy_export.md.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from pogosim.policy.errors import PolicyError
 from pogosim.policy.network import MOST_FLOAT, Network
 from pogosim.policy.npz_file import WRONG_FILE, read_arrays
 
-FEWEST_WHOLE = 16  # whole numbers in the range of an input that is no whole number in a run
+FEWEST_WHOLE = 16  # whole numbers in the range of an input that may have fractions
 OBSERVATIONS = "observations"  # the array of a .npz file that has several
 WANTED = (
     "expected an .npz or .npy file with an array of shape (..., inputs), or a data file with a column for each input"
@@ -109,16 +109,23 @@ def with_ranges(network: Network, observations: npt.NDArray[np.float64]) -> Netw
     return replace(network, input_range=made)
 
 
-def check_whole(network: Network, observations: npt.NDArray[np.float64]) -> None:
-    """Check that inputs which are no whole numbers in a run can be rounded. Shape (observations, inputs).
+def check_whole(network: Network, observations: npt.NDArray[np.float64] | None) -> None:
+    """Check that inputs can be rounded: that there are many whole numbers in their ranges, or a run has no others.
+
+    Args:
+        network: The policy.
+        observations: Those of a run, shape (observations, inputs); None: there is none.
 
     Raises:
-        PolicyError: The range of one has few whole numbers.
+        PolicyError: An input cannot.
     """
-    for name, (least, most), own in zip(network.input_names, network.input_range, observations.T, strict=True):
-        if np.ceil(most) - np.floor(least) < FEWEST_WHOLE and not np.array_equal(own, np.rint(own)):
+    for index, (name, (least, most)) in enumerate(zip(network.input_names, network.input_range, strict=True)):
+        own = None if observations is None else observations[:, index]
+        if np.ceil(most) - np.floor(least) < FEWEST_WHOLE and (own is None or (own != np.rint(own)).any()):
+            what = "with fractions" if own is not None else "which has few whole numbers"
+            other = "" if own is not None else "; or if it has no fractions, show observations of a run (--calibration)"
             raise PolicyError(
-                f"the input {name} ranges from {least:g} to {most:g}, with fractions; a policy in whole numbers takes "
-                "whole inputs: give it in a smaller unit, such as counts of the sensor, and scale it by input_offset "
-                "and input_scale"
+                f"the input {name} ranges from {least:g} to {most:g}, {what}; a policy in whole numbers takes whole "
+                "inputs: give it in a smaller unit, such as counts of the sensor, and scale it by input_offset and "
+                f"input_scale{other}"
             )

@@ -1,18 +1,6 @@
-"""Policies in .npz files of NumPy.
+"""Policies in .npz files of NumPy: arrays by name, which the table of docs/policy_export.md describes.
 
-Their arrays have these names:
-
-layer0_weights             (units, inputs); (3 units, inputs) of a GRU: reset, update, new
-layer0_bias                (units,); (3 units,) of a GRU. 0 without it
-layer0_activation          text: identity, relu, hardtanh, tanh or sigmoid. identity without it
-layer0_kind                text: dense, elman or gru. dense without it
-layer0_recurrent_weights   (units, units) of an elman layer, (3 units, units) of a GRU
-layer0_recurrent_bias      (3 units,) of a GRU; 0 without it
-layer1_weights ...         the next layer
-input_names, output_names  texts: names as in C
-input_offset, input_scale  (inputs,) or one number: normalised = (input - input_offset) * input_scale
-output_scale, output_offset  (outputs,) or one number: output = value * output_scale + output_offset
-input_low, input_high      (inputs,) or one number: the range of inputs; NaN: unknown
+`OF_LAYER` and `SCALING` are all names.
 """
 
 from __future__ import annotations

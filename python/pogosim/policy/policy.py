@@ -48,12 +48,11 @@ class Policy:
         self.fixed: FixedNetwork | None = None
         if numbers not in NUMBERS:
             raise PolicyError(f"numbers: expected one of {', '.join(NUMBERS)}, found {numbers!r}")
-        if calibration is not None:
-            rows = checked_observations(calibration, network, "calibration")
+        rows = None if calibration is None else checked_observations(calibration, network, "calibration")
+        if rows is not None:
             self.network = with_ranges(network, rows)
         if numbers != "float":
-            if calibration is not None:
-                check_whole(self.network, rows)
+            check_whole(self.network, rows)
             self.fixed = fixed_point.fixed_point(self.network, int(numbers.removeprefix("int")))
 
     @classmethod
