@@ -139,6 +139,7 @@ def run(options: argparse.Namespace, prog: str) -> int:
     """
     from pogosim.policy.c_header import check_size, checked_prefix, header_of
     from pogosim.policy.calibration import read_observations
+    from pogosim.policy.overflow import check_overflow
     from pogosim.policy.policy import Policy
     from pogosim.policy.reading import read_policy, with_scaling
     from pogosim.policy.test_vector import vector_of
@@ -151,6 +152,7 @@ def run(options: argparse.Namespace, prog: str) -> int:
         network = with_scaling(network, Path(options.scaling))
     observations = read_observations(Path(options.calibration), network) if options.calibration is not None else None
     policy = Policy(network, numbers=options.numbers, calibration=observations)
+    may_overflow = check_overflow(policy.network) if policy.fixed is None else None
     header = header_of(policy, vector_of(policy, observations), options.name, Path(options.policy).name)
     cost = "--no-cycles" if options.no_cycles else measured(header, policy, options.name)
     with partial_output(output) as partial:
@@ -158,6 +160,8 @@ def run(options: argparse.Namespace, prog: str) -> int:
     lines = report(header, policy, cost, observations, options.output)
     if code := say_of_complete(prog, options.output, *lines):
         return code
+    if may_overflow is not None:
+        warn(prog, may_overflow)
     program_bytes = header.constant_bytes + (0 if isinstance(cost, str) else cost.code_bytes)
     if program_bytes + header.state_bytes + header.stack_bytes > MEMORY_BYTES:
         warn(prog, f"the policy does not fit into the {MEMORY_BYTES // 1024} KiB of a robot")
