@@ -24,10 +24,10 @@ from pogosim.firmware.making import made_in
 from pogosim.installation import find_installation
 from pogosim.policy import Dense, Gru, Network, Policy, network_of
 from pogosim.policy.c_header import header_of
+from pogosim.policy.choices import NUMBERS
+from pogosim.policy.example_steps import example_steps
 from pogosim.policy.measuring import measure
 from pogosim.policy.network import Layer
-from pogosim.policy.policy import NUMBERS
-from pogosim.policy.test_vector import vector_of
 from pogosim.swarm_picture import INK, PAPER
 from pogosim.utils import load_dataframe
 from quotes import Quote, paragraph
@@ -128,20 +128,19 @@ def large_policy() -> Network:
 
 def sizes() -> Quote:
     """Return what a call takes on an emulated robot, of two policies with all kinds of numbers."""
-    pogosim_ = find_installation()
+    installed = find_installation()
     rows = [
         "| policy | numbers | program | state | multiplications | cycles | of a tick |",
         "|---|---|---|---|---|---|---|",
     ]
     for numbers in NUMBERS:
         for policy in (policy_in(numbers), Policy(large_policy(), numbers=numbers)):
-            header = header_of(policy, vector_of(policy, None), "policy", "policy.npz")
-            cost = measure(header.text, "policy", policy.network.is_recurrent, pogosim_)
-            share = f"{100 * cost.share:.2g} %" if cost.share < 0.995 else f"{100 * cost.share:.0f} %"
+            header = header_of(policy, example_steps(policy, None), "policy", "policy.npz")
+            cost = measure(header.text, "policy", policy.network.is_recurrent, installed)
             program = f"{header.constant_bytes + cost.code_bytes} bytes"
             rows.append(
                 f"| {policy.network.describe()} | {numbers} | {program} | {header.state_bytes} bytes "
-                f"| {header.multiplications} | {cost.cycles:.0f} | {share} |"
+                f"| {header.multiplications} | {cost.cycles:.0f} | {cost.percent} |"
             )
     return Quote((*rows[:2], *sorted(rows[2:], key=lambda row: row.split("|")[1])))
 

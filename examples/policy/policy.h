@@ -39,7 +39,7 @@ enum {
 #define POLICY_CONSTANT_BYTES 763  // weights, biases, tables and test vector
 #define POLICY_STATE_BYTES 0  // of each robot, in USERDATA
 #define POLICY_STACK_BYTES 46  // arrays of a step
-#define POLICY_MULTIPLICATIONS 41  // of a step, at most
+#define POLICY_MULTIPLICATIONS 49  // of a step, at most
 
 typedef int32_t policy_value_t;  // of inputs and outputs
 
@@ -148,12 +148,9 @@ static inline int32_t policy_scaled(int32_t sum, int shift, int32_t most) {
 static inline int16_t policy_tanh(int32_t argument) {
     int32_t const size = argument < 0 ? -argument : argument;
     int32_t const below = policy_tanh_table[size >> 7];
-    int32_t const found = below + (((policy_tanh_table[(size >> 7) + 1] - below) * (size & 127) + 64) >> 7);
+    int32_t const above = policy_tanh_table[(size >> 7) + 1];
+    int32_t const found = below + (((above - below) * (size & 127) + 64) >> 7);
     return (int16_t)(argument < 0 ? -found : found);
-}
-
-static inline int16_t policy_identity(int32_t value) {
-    return (int16_t)value;
 }
 
 // Adds weights, of so many rows and columns, times values to the sums.
@@ -172,7 +169,7 @@ static inline void policy_add_product(
 static inline void policy_next_hardtanh(
     int32_t const* sums, int8_t const* shift, uint16_t units, int16_t* values) {
     for (uint16_t i = 0; i < units; i++) {
-        values[i] = policy_identity(policy_scaled(sums[i], shift[i], 16384));
+        values[i] = (int16_t)(policy_scaled(sums[i], shift[i], 16384));
     }
 }
 

@@ -310,7 +310,7 @@ def test_numbers_around_the_layers_scale_inputs_and_outputs(tmp_path: Path) -> N
         ),
         ([("Softmax", ["x"], {})], r"Softmax is no operator of a policy"),
         ([("Tanh", ["x"], {})], r"Tanh is not directly behind Gemm, or MatMul and Add"),
-        ([("MatMul", ["x", "x"], {})], r"MatMul has weights that are not constant in the file|No Op|damaged"),
+        ([("MatMul", ["x", "x"], {})], r"MatMul has weights that are not constant in the file"),
         ([("Gemm", ["x", "w"], {"alpha": 2.0})], r"Gemm has transA, alpha or beta other than 0, 1 and 1"),
         ([("Clip", ["x", "low", "high"], {})], r"Clip is not directly behind Gemm, or MatMul and Add"),
         ([("MatMul", ["x", "w"], {}), ("Clip", ["0", "low", "two"], {})], r"Clip cuts to other ends than -1 and 1"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -11,22 +12,17 @@ import pytest
 from firmwares import firmware_in, project_of, run_firmware
 from pogosim.policy import Dense, Policy, PolicyError, network_of
 from pogosim.policy.c_header import header_of
-from pogosim.policy.c_text import Array
-from pogosim.policy.policy import NUMBERS
-from pogosim.policy.test_vector import vector_of
+from pogosim.policy.choices import NUMBERS
+from pogosim.policy.example_steps import example_steps
 from random_policies import ALL, INPUTS, observations, random_network
 from running import compiler
 
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wfloat-conversion", "-Wshadow", "-Werror")
-COMPILERS = [
-    (name, flags)
-    for name, flags in (
-        (compiler("gcc"), ["-std=c99", "-O2"]),
-        (compiler("gcc"), ["-std=c11", "-ffp-contract=off", "-fsanitize=undefined", "-fno-sanitize-recover"]),
-        (compiler("clang", "clang-14"), ["-std=c11", "-O2", "-ffp-contract=off"]),
-        (compiler("g++"), ["-x", "c++", "-std=c++17", "-O2"]),
-    )
-    if name
+COMPILERS = [  # gcc and g++ build the project; clang is tried where it is installed
+    ("gcc", ["-std=c99", "-O2"]),
+    ("gcc", ["-std=c11", "-ffp-contract=off", "-fsanitize=undefined", "-fno-sanitize-recover"]),
+    ("g++", ["-x", "c++", "-std=c++17", "-O2"]),
+    *((name, ["-std=c11", "-O2", "-ffp-contract=off"]) for name in [compiler("clang", "clang-14")] if name),
 ]
 POLICIES = [(name, numbers) for name in ALL for numbers in NUMBERS]
 ROWS = 40
@@ -57,7 +53,7 @@ def headers(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, numbers in POLICIES:
         policy = Policy(random_network(ALL[name]), numbers=numbers)
         prefix = prefix_of(name, numbers)
-        (folder / f"{prefix}.h").write_text(header_of(policy, vector_of(policy, None), prefix, "random.npz").text)
+        (folder / f"{prefix}.h").write_text(header_of(policy, example_steps(policy, None), prefix, "random.npz").text)
     return folder
 
 
@@ -158,18 +154,19 @@ def test_emulated_robot_gives_the_same_bits_as_python(headers: Path, tmp_path: P
 @pytest.mark.parametrize("numbers", NUMBERS)
 def test_self_test_finds_a_changed_weight(numbers: str, tmp_path: Path) -> None:
     policy = Policy(random_network(ALL["plain"]), numbers=numbers)
-    text = header_of(policy, vector_of(policy, None), "policy", "a").text
-    start = text.index("policy_bias_0[8] = {") + len("policy_bias_0[8] = {")
-    for content, code in ((text, 0), (f"{text[:start]}2000000+{text[start:].lstrip()}", 1)):
+    text = header_of(policy, example_steps(policy, None), "policy", "a").text
+    changed, count = re.subn(r"(policy_weights_0\[24\] = \{\s+)[^,]+,", r"\g<1>0,", text)
+    assert count == 1
+    for content, code in ((text, 0), (changed, 1)):
         (tmp_path / "policy.h").write_text(content)
         (tmp_path / "main.c").write_text('#include "policy.h"\nint main(void) { return !policy_self_test(); }\n')
-        subprocess.run(["cc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
+        subprocess.run(["gcc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
         assert subprocess.run([tmp_path / "main"], check=False).returncode == code
 
 
 def test_sizes_in_the_header_are_those_of_its_arrays(tmp_path: Path) -> None:
     policy = Policy(random_network(ALL["gated"]), numbers="int8")
-    header = header_of(policy, vector_of(policy, None), "policy", "a")
+    header = header_of(policy, example_steps(policy, None), "policy", "a")
     assert header.state_bytes == 2 * (5 + 4)
     assert f"#define POLICY_CONSTANT_BYTES {header.constant_bytes} " in header.text
     (tmp_path / "policy.h").write_text(header.text)
@@ -177,7 +174,7 @@ def test_sizes_in_the_header_are_those_of_its_arrays(tmp_path: Path) -> None:
         '#include "policy.h"\n_Static_assert(sizeof(policy_state_t) == POLICY_STATE_BYTES, "");\n'
         "int main(void) { return policy_self_test(); }\n"
     )
-    subprocess.run(["cc", "-c", "-O0", "main.c"], cwd=tmp_path, check=True)
+    subprocess.run(["gcc", "-c", "-O0", "main.c"], cwd=tmp_path, check=True)
     listed = subprocess.run(["nm", "-S", "main.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     sizes = [int(line.split()[1], 16) for line in listed.splitlines() if line.split()[-2] == "r"]
     assert sum(sizes) == header.constant_bytes
@@ -187,12 +184,55 @@ def test_inputs_and_outputs_may_have_any_name_in_c(tmp_path: Path) -> None:
     layer = Dense(np.ones((5, 5)), np.zeros(5), "tanh")
     names = ["count", "Counts", "inputs", "S", "while"]
     policy = Policy(network_of([layer], input_names=names, output_names=names, input_low=0, input_high=9))
-    (tmp_path / "policy.h").write_text(header_of(policy, vector_of(policy, None), "policy", "a").text)
+    (tmp_path / "policy.h").write_text(header_of(policy, example_steps(policy, None), "policy", "a").text)
     (tmp_path / "main.c").write_text(
         '#include "policy.h"\nint main(void) { return POLICY_INPUT_COUNT + POLICY_OUTPUT_WHILE + POLICY_OUTPUTS; }\n'
     )
-    subprocess.run(["cc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
+    subprocess.run(["gcc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
     assert subprocess.run([tmp_path / "main"], check=False).returncode == 0 + 4 + 5
+
+
+@pytest.mark.parametrize("prefix", ["int", "while", "int8"])
+def test_names_may_begin_with_any_word(prefix: str, tmp_path: Path) -> None:
+    """A word of C, too: all names go on behind it."""
+    policy = Policy(random_network(ALL["gated"]), numbers="int8")
+    text = header_of(policy, example_steps(policy, None), prefix, "a").text
+    assert f"a member `{prefix}_state_t {prefix}_state;` in USERDATA" in text
+    (tmp_path / "policy.h").write_text(text)
+    (tmp_path / "main.c").write_text(
+        f'#include "policy.h"\nint main(void) {{ {prefix}_state_t {prefix}_state; {prefix}_reset(&{prefix}_state); '
+        f"return !{prefix}_self_test(); }}\n"
+    )
+    subprocess.run(["gcc", *STRICT, "main.c", "-o", "main"], cwd=tmp_path, check=True)
+    subprocess.run([tmp_path / "main"], check=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers", "count"),
+    [
+        # inputs, weights, function of each unit, weights, function, outputs
+        ("plain", "float", 3 + 3 * 8 + 8 * 11 + 8 * 2 + 2 * 0 + 2),
+        ("plain", "int16", 3 + 3 * 8 + 8 * 2 + 8 * 2 + 2 * 1 + 2),
+        ("linear", "int8", 3 + 3 * 6 + 6 * 1 + 6 * 5 + 5 * 2 + 5 * 2 + 2 * 1),
+        ("elman", "float", 3 + (3 + 6) * 6 + 6 * 11 + 6 * 2 + 2 * 11 + 2),
+        ("gated", "float", 3 + (3 + 5) * 15 + 5 * 35 + (5 + 4) * 4 + 4 * 11 + 4 * 2 + 2),
+        # of a GRU: the shift of four sums and of their total, three of the table, and two products
+        ("gated", "int16", 3 + (3 + 5) * 15 + 5 * (4 + 1 + 3 + 2) + (5 + 4) * 4 + 4 * 2 + 4 * 2 + 2 * 1 + 2),
+    ],
+)
+def test_multiplications_are_those_of_the_emitted_functions(name: str, numbers: str, count: int) -> None:
+    policy = Policy(random_network(ALL[name]), numbers=numbers)
+    header = header_of(policy, example_steps(policy, None), "policy", "a")
+    assert header.multiplications == count
+    assert f"#define POLICY_MULTIPLICATIONS {count} " in header.text
+
+
+def test_functions_that_a_policy_does_not_call_are_left_out() -> None:
+    network = network_of([Dense(np.ones((1, 1)), np.zeros(1), "tanh")])
+    policy = Policy(network)
+    text = header_of(policy, example_steps(policy, None), "policy", "a").text
+    found = re.findall(r"^static inline \w+ policy_(\w+)\(", text, re.MULTILINE)
+    assert found == ["exp_of_negative", "tanh", "add_product", "next_tanh", "step", "self_test"]
 
 
 @pytest.mark.parametrize("activation", ["identity", "relu"])
@@ -202,17 +242,11 @@ def test_policy_whose_results_overflow_is_refused(activation: str) -> None:
     policy = Policy(network_of(layers, output_names=["left", "right", "led"]))
     said = r"the output left is (inf|-inf|nan) for the inputs [^;]*: numbers overflow on the way; expected weights and"
     with pytest.raises(PolicyError, match=said):
-        vector_of(policy, np.array([[1, 2, 3], [4, 5, 6]]))
+        example_steps(policy, np.array([[1, 2, 3], [4, 5, 6]]))
 
 
-@pytest.mark.parametrize("name", ["", "a b", "1a", "int", "a_", "x" * 64, "é"])
+@pytest.mark.parametrize("name", ["", "a b", "1a", "a_", "x" * 64, "é"])
 def test_prefix_that_is_no_name_in_c_is_refused(name: str) -> None:
     policy = Policy(random_network(ALL["plain"]))
     with pytest.raises(PolicyError, match="expected a name as in C"):
-        header_of(policy, vector_of(policy, None), name, "a")
-
-
-@pytest.mark.parametrize(("columns", "row"), [(1, "    {1},"), (2, "    {1, 1},"), (3, "    {1, 1, 1},")])
-def test_rows_of_arrays_have_their_braces(columns: int, row: str) -> None:
-    made = Array("int8_t", "a", np.ones((2, columns))).lines()
-    assert made == [f"static int8_t const a[2][{columns}] = {{", row, row, "};"]
+        header_of(policy, example_steps(policy, None), name, "a")

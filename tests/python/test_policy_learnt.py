@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from in_process import pogosim as command
 from pogosim.policy import Dense, Policy, network_of
+from pogosim.policy.choices import NUMBERS
 from pogosim.policy.npz_file import OF_LAYER, SCALING
-from pogosim.policy.policy import NUMBERS
 from running import ROOT
 from swarm_envs import hosted_env
 

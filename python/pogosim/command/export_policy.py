@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from pogosim.command.parser import Parser, complain, guarded, say_of_complete, warn
 from pogosim.outputs import OutputError, checked_output, leads_to, partial_output
+from pogosim.policy.choices import ACTIVATIONS, NUMBERS
 
 if TYPE_CHECKING:
     from pogosim.policy.c_header import Header
@@ -22,8 +23,6 @@ layers that see all values before them, Elman layers and GRUs. docs/policy_expor
 float needs no other file. int16 and int8 compute in whole numbers, which robots do ten times as fast or more; they need
 the range of each input, that of the policy or else of observations of a run: an .npz or .npy file with an array of
 shape (..., inputs), or a data file with a column for each input. Inputs are cut to their range, in floats as well."""
-NUMBERS = ("float", "int16", "int8")
-ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")
 MEMORY_BYTES = 128 * 1024  # of a robot, for program, variables and stack
 
 
@@ -122,10 +121,9 @@ def report(header: Header, policy: Policy, cost: Measured | str, observations: o
     if isinstance(cost, str):
         return [*lines, f"cycles           not measured: {cost}"]
     fits = "it fits" if cost.share <= 1 else "it does not fit"
-    share = f"{100 * cost.share:.2g}" if cost.share < 0.995 else f"{100 * cost.share:.0f}"
     return [
         *lines,
-        f"cycles           {cost.cycles:.0f} per call on an emulated robot, {share} % of a tick at 60 Hz "
+        f"cycles           {cost.cycles:.0f} per call on an emulated robot, {cost.percent} of a tick at 60 Hz "
         f"({cost.budget:.0f}): {fits}",
     ]
 
@@ -139,10 +137,10 @@ def run(options: argparse.Namespace, prog: str) -> int:
     """
     from pogosim.policy.c_header import check_size, checked_prefix, header_of
     from pogosim.policy.calibration import read_observations
+    from pogosim.policy.example_steps import example_steps
     from pogosim.policy.overflow import check_overflow
     from pogosim.policy.policy import Policy
     from pogosim.policy.reading import read_policy, with_scaling
-    from pogosim.policy.test_vector import vector_of
 
     output = checked_header(options)
     checked_prefix(options.name)
@@ -153,7 +151,7 @@ def run(options: argparse.Namespace, prog: str) -> int:
     observations = read_observations(Path(options.calibration), network) if options.calibration is not None else None
     policy = Policy(network, numbers=options.numbers, calibration=observations)
     may_overflow = check_overflow(policy.network) if policy.fixed is None else None
-    header = header_of(policy, vector_of(policy, observations), options.name, Path(options.policy).name)
+    header = header_of(policy, example_steps(policy, observations), options.name, Path(options.policy).name)
     cost = "--no-cycles" if options.no_cycles else measured(header, policy, options.name)
     with partial_output(output) as partial:
         partial.write_text(header.text, encoding="utf-8")

@@ -15,7 +15,7 @@ STEPS = 4  # one after the other, so that a recurrent policy remembers something
 
 
 @dataclass(frozen=True)
-class TestVector:
+class ExampleSteps:
     """Inputs and outputs of some steps from the initial state on.
 
     Attributes:
@@ -27,8 +27,8 @@ class TestVector:
     outputs: npt.NDArray[Any]
 
 
-def vector_of(policy: Policy, observations: npt.NDArray[np.float64] | None) -> TestVector:
-    """Return the test vector of a policy.
+def example_steps(policy: Policy, observations: npt.NDArray[np.float64] | None) -> ExampleSteps:
+    """Return steps of a policy, its test vector.
 
     Args:
         policy: Its state is reset.
@@ -57,4 +57,4 @@ def vector_of(policy: Policy, observations: npt.NDArray[np.float64] | None) -> T
             f"the output {name} is {outputs[step, index]} for the inputs {given}: numbers overflow on the way; "
             "expected weights and scales whose results are floats of 32 bits"
         )
-    return TestVector(inputs, outputs)
+    return ExampleSteps(inputs, outputs)

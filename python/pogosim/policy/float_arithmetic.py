@@ -101,14 +101,13 @@ def elman(layer: Elman, values: Floats, state: Floats) -> Floats:
 def gru(layer: Gru, values: Floats, state: Floats) -> Floats:
     """Return the next state of a GRU."""
     units = layer.units
-    gates, new = layer.recurrent_weights[: 2 * units], layer.recurrent_weights[2 * units :]
-    bias = layer.bias.copy()
-    bias[: 2 * units] += layer.recurrent_bias[: 2 * units]
-    sums = add_product(start(bias, values), layer.weights, values)
-    both = sigmoid(add_product(sums[..., : 2 * units], gates, state))
+    sums = np.array(start(layer.sum_bias, values))
+    sums[..., : 3 * units] = add_product(sums[..., : 3 * units], layer.weights, values)
+    gates, old = sums[..., : 2 * units], sums[..., 3 * units :]
+    both = sigmoid(add_product(gates, layer.recurrent_weights[: 2 * units], state))
     reset, keep = both[..., :units], both[..., units:]
-    remembered = add_product(start(layer.recurrent_bias[2 * units :], values), new, state)
-    candidate = tanh(sums[..., 2 * units :] + reset * remembered)
+    remembered = add_product(old, layer.recurrent_weights[2 * units :], state)
+    candidate = tanh(sums[..., 2 * units : 3 * units] + reset * remembered)
     return candidate + keep * (state - candidate)
 
 
@@ -128,13 +127,9 @@ def step(network: Network, observation: npt.NDArray[np.float32], state: Floats) 
         state: Shape (..., values that are remembered).
     """
     values = (cut(observation, *network.input_ends) - network.input_offset) * network.input_scale
-    states: list[Floats] = []
-    begin = 0
-    for layer in network.layers:
-        end = begin + (layer.units if layer.kind != "dense" else 0)
-        values = next_of(layer, values, state[..., begin:end])
-        if end > begin:
-            states.append(values)
-        begin = end
-    outputs = values * network.output_scale + network.output_offset
-    return outputs, np.concatenate(states, axis=-1) if states else state
+    states = network.split_state(state)
+    for number, layer in enumerate(network.layers):
+        values = next_of(layer, values, states[number])
+        if layer.state_units:
+            states[number] = values
+    return values * network.output_scale + network.output_offset, np.concatenate(states, axis=-1)

@@ -60,24 +60,27 @@ class Measured:
         cycles: Cycles of a call, on average, with the compiler's routines that it calls.
         budget: Cycles between two ticks.
         code_bytes: Machine code of its functions, without the compiler's routines.
-        stack_bytes: Deepest stack of the program that has called it.
     """
 
     cycles: float
     budget: float
     code_bytes: int
-    stack_bytes: int
 
     @property
     def share(self) -> float:
         """Share of a tick, 0 to 1 if it fits."""
         return self.cycles / self.budget
 
+    @property
+    def percent(self) -> str:
+        """Share of a tick: "1.4 %"."""
+        return f"{100 * self.share:.2g} %" if self.share < 0.995 else f"{100 * self.share:.0f} %"
+
 
 def program_of(prefix: str, is_recurrent: bool) -> str:
     """Return a program that calls a policy in each tick, after its self test."""
-    state = f"{prefix}_state_t policy;" if is_recurrent else ""
-    argument = "&mydata->policy," if is_recurrent else ""
+    state = f"{prefix}_state_t {prefix}_state;" if is_recurrent else ""
+    argument = f"&mydata->{prefix}_state," if is_recurrent else ""
     return PROGRAM.replace("@", f"{prefix}_").replace("STATE", state).replace("ARGUMENT ", f"{argument} ")
 
 
@@ -107,14 +110,14 @@ def code_bytes(firmware: Path, prefix: str) -> int:
         )
 
 
-def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation) -> Measured:
+def measure(header: str, prefix: str, is_recurrent: bool, installation: Installation) -> Measured:
     """Compile a policy for robots, let an emulated one check itself and call it in each tick, and measure it.
 
     Args:
         header: The exported policy.
         prefix: What its names begin with.
         is_recurrent: Whether it has a state.
-        pogosim: The simulator.
+        installation: The simulator.
 
     Raises:
         FirmwareError: The robots' compiler is missing.
@@ -131,8 +134,8 @@ def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation)
         configuration = folder / "test.yaml"
         configuration.write_text(CONFIGURATION, encoding="utf-8")
         raw = folder / "profile.json"
-        with firmware_of(source, pogosim, is_quiet=True) as made:
-            if (code := profile_run(made.firmware, raw, 1, ["-c", str(configuration)], pogosim)) != 0:
+        with firmware_of(source, installation, is_quiet=True) as made:
+            if (code := profile_run(made.firmware, raw, 1, ["-c", str(configuration)], installation)) != 0:
                 raise PolicyError(
                     f"the run on an emulated robot that measures the policy ended with exit code {code}: its self test "
                     "failed, or the messages above say why; --no-cycles exports without it"
@@ -141,4 +144,4 @@ def measure(header: str, prefix: str, is_recurrent: bool, pogosim: Installation)
         profile = read_profile(raw, "the profile of the policy")
     budget = profile.budget_cycles
     assert budget is not None  # it has a main loop
-    return Measured(cycles_per_call(profile, f"{prefix}_probe"), budget, size, profile.deepest_stack_bytes)
+    return Measured(cycles_per_call(profile, f"{prefix}_probe"), budget, size)

@@ -11,27 +11,51 @@ Numbers are floats of 32 bits, as on the robot.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from pogosim.nearest_name import unknown
+from pogosim.policy.choices import ACTIVATIONS
 from pogosim.policy.errors import PolicyError
 
 Floats = npt.NDArray[np.float32]
 Numbers = npt.NDArray[Any]  # of layers: floats of 32 bits once they are checked
 
-ACTIVATIONS = ("identity", "relu", "hardtanh", "tanh", "sigmoid")  # hardtanh: cut to -1 to 1
 MOST_UNITS = 4096  # of a layer
 MOST_FLOAT = float(np.finfo(np.float32).max)
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")  # a name in C
 
 
+class Units:
+    """What all kinds of layers have.
+
+    Attributes:
+        kind: Name of the kind.
+        gates: Rows of weights for each unit.
+        bias: Shape (gates units,).
+    """
+
+    kind: ClassVar[str]
+    gates: ClassVar[int] = 1
+    bias: Numbers
+
+    @property
+    def units(self) -> int:
+        """Values that the layer gives."""
+        return len(self.bias) // self.gates
+
+    @property
+    def state_units(self) -> int:
+        """Values that the layer remembers: all that it gives, or none."""
+        return self.units
+
+
 @dataclass(frozen=True)
-class Dense:
+class Dense(Units):
     """A layer whose units see all values before it: activation(weights x + bias).
 
     Attributes:
@@ -46,13 +70,18 @@ class Dense:
     kind = "dense"
 
     @property
-    def units(self) -> int:
-        """Values that the layer gives."""
-        return len(self.bias)
+    def state_units(self) -> int:
+        """Values that the layer remembers."""
+        return 0
+
+    @property
+    def label(self) -> str:
+        """The layer in two words."""
+        return f"{self.units} {self.activation}"
 
 
 @dataclass(frozen=True)
-class Elman:
+class Elman(Units):
     """A recurrent layer: h becomes activation(weights x + recurrent_weights h + bias), and is what it gives.
 
     Attributes:
@@ -69,19 +98,21 @@ class Elman:
     kind = "elman"
 
     @property
-    def units(self) -> int:
-        """Values that the layer gives."""
-        return len(self.bias)
+    def label(self) -> str:
+        """The layer in a few words."""
+        return f"{self.units} {self.activation} (Elman)"
 
 
 @dataclass(frozen=True)
-class Gru:
+class Gru(Units):
     """A gated recurrent layer, with the parameters of PyTorch's nn.GRU.
 
     It gives h, which becomes n + z (h - n), where
 
         r = sigmoid(W_r x + b_r + U_r h + c_r)        z = sigmoid(W_z x + b_z + U_z h + c_z)
         n = tanh(W_n x + b_n + r (U_n h + c_n))
+
+    In a network, c_r and c_z are 0, and b_r and b_z the sums of both: `network_of` adds them.
 
     Attributes:
         weights: W_r, W_z and W_n below each other. Shape (3 units, values before).
@@ -95,15 +126,21 @@ class Gru:
     bias: Numbers
     recurrent_bias: Numbers
     kind = "gru"
+    gates = 3
 
     @property
-    def units(self) -> int:
-        """Values that the layer gives."""
-        return len(self.bias) // 3
+    def sum_bias(self) -> Numbers:
+        """What the sums of r, z, W_n x and U_n h begin with, in a network. Shape (4 units,)."""
+        return np.concatenate([self.bias, self.recurrent_bias[2 * self.units :]])
+
+    @property
+    def label(self) -> str:
+        """The layer in two words."""
+        return f"{self.units} GRU"
 
 
 Layer = Dense | Elman | Gru
-GATES = {"dense": 1, "elman": 1, "gru": 3}  # rows of weights for each unit, by kind
+KINDS: Mapping[str, type[Layer]] = {kind.kind: kind for kind in (Dense, Elman, Gru)}
 
 
 @dataclass(frozen=True)
@@ -154,21 +191,24 @@ class Network:
         return low, high
 
     @property
-    def is_recurrent(self) -> bool:
-        """Whether a layer remembers something from one call to the next."""
-        return any(layer.kind != "dense" for layer in self.layers)
-
-    @property
     def state_units(self) -> int:
         """Values that are remembered."""
-        return sum(layer.units for layer in self.layers if layer.kind != "dense")
+        return sum(layer.state_units for layer in self.layers)
+
+    @property
+    def is_recurrent(self) -> bool:
+        """Whether a layer remembers something from one call to the next."""
+        return self.state_units > 0
+
+    def split_state(self, state: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
+        """Return what each layer remembers, shape (..., its values), of all values, shape (..., values)."""
+        ends = np.cumsum([layer.state_units for layer in self.layers])
+        return np.split(state, ends[:-1], axis=-1)
 
     def describe(self) -> str:
         """Return the policy in a line: "3 inputs, 8 tanh, 2 hardtanh"."""
-        layers = (f"{layer.units} {'GRU' if isinstance(layer, Gru) else layer.activation}" for layer in self.layers)
-        kinds = (" (Elman)" if layer.kind == "elman" else "" for layer in self.layers)
-        parts = [text + kind for text, kind in zip(layers, kinds, strict=True)]
-        return ", ".join([f"{self.inputs} input{'s' * (self.inputs != 1)}", *parts])
+        inputs = f"{self.inputs} input{'s' * (self.inputs != 1)}"
+        return ", ".join([inputs, *(layer.label for layer in self.layers)])
 
 
 def network_of(
@@ -230,7 +270,7 @@ def checked_layer(layer: Layer, before: int | None, place: str) -> Layer:
     Raises:
         PolicyError: Shapes do not fit, or it has something else than finite numbers.
     """
-    gates = GATES[layer.kind]
+    gates = layer.gates
     weights = numbers(layer.weights, f"{place}: weights")
     if weights.ndim != 2 or 0 in weights.shape or len(weights) % gates:
         rows = "(units, inputs)" if gates == 1 else f"({gates} units, inputs)"
@@ -250,7 +290,9 @@ def checked_layer(layer: Layer, before: int | None, place: str) -> Layer:
     recurrent = shaped(layer.recurrent_weights, (rows, units), f"{place}: recurrent_weights")
     if isinstance(layer, Elman):
         return Elman(weights, recurrent, bias, activation(layer.activation, place))
-    return Gru(weights, recurrent, bias, shaped(layer.recurrent_bias, (rows,), f"{place}: recurrent_bias"))
+    recurrent_bias = shaped(layer.recurrent_bias, (rows,), f"{place}: recurrent_bias")
+    added = np.where(np.arange(rows) < 2 * units, recurrent_bias, np.float32(0.0))
+    return Gru(weights, recurrent, numbers(bias.astype(float) + added, f"{place}: bias"), recurrent_bias - added)
 
 
 def activation(name: str, place: str) -> str:

@@ -11,6 +11,7 @@ import tokenize
 import zipfile
 import zlib
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ import numpy.typing as npt
 from pogosim.nearest_name import unknown
 from pogosim.policy.content import MOST_BYTES, content_of
 from pogosim.policy.errors import PolicyError
-from pogosim.policy.network import GATES, Dense, Elman, Gru, Layer, Network, network_of
+from pogosim.policy.network import KINDS, Layer, Network, network_of
 
 OF_LAYER = ("weights", "bias", "activation", "kind", "recurrent_weights", "recurrent_bias")
 NUMBERS = ("input_offset", "input_scale", "output_scale", "output_offset", "input_low", "input_high")
@@ -102,23 +103,17 @@ def layer_in(arrays: Mapping[str, npt.NDArray[Any]], place: str) -> Layer:
         PolicyError: One is missing, or is another layer's.
     """
     kind = text(arrays["kind"], f"{place}_kind") if "kind" in arrays else "dense"
-    if kind not in GATES:
-        raise PolicyError(f"{place}_kind: {unknown('kind of layer', kind, GATES, 'expected dense, elman or gru')}")
-    needed = {"weights"} | ({"recurrent_weights"} if kind != "dense" else set())
-    allowed = needed | {"kind", "bias"} | ({"recurrent_bias"} if kind == "gru" else {"activation"})
-    if lacking := sorted(needed - arrays.keys()):
+    if kind not in KINDS:
+        raise PolicyError(f"{place}_kind: {unknown('kind of layer', kind, KINDS, 'expected dense, elman or gru')}")
+    parts = [part.name for part in fields(KINDS[kind])]
+    if lacking := [part for part in parts if part in ("weights", "recurrent_weights") and part not in arrays]:
         raise PolicyError(f"{place}_{lacking[0]} is missing; a layer of the kind {kind} has it")
-    if more := sorted(arrays.keys() - allowed):
+    if more := sorted(arrays.keys() - {*parts, "kind"}):
         raise PolicyError(f"{place}_{more[0]}: a layer of the kind {kind} has no {more[0]}")
-    rows = np.shape(arrays["weights"])[:1]
-    bias = arrays.get("bias", np.zeros(rows, np.float32))
-    if kind == "gru":
-        recurrent_bias = arrays.get("recurrent_bias", np.zeros(rows, np.float32))
-        return Gru(arrays["weights"], arrays["recurrent_weights"], bias, recurrent_bias)
-    activation = text(arrays["activation"], f"{place}_activation") if "activation" in arrays else "identity"
-    if kind == "elman":
-        return Elman(arrays["weights"], arrays["recurrent_weights"], bias, activation)
-    return Dense(arrays["weights"], bias, activation)
+    zeros = np.zeros(np.shape(arrays["weights"])[:1], np.float32)
+    found: dict[str, Any] = {"bias": zeros, "recurrent_bias": zeros, "activation": np.array("identity"), **arrays}
+    found["activation"] = text(found["activation"], f"{place}_activation")
+    return KINDS[kind](**{part: found[part] for part in parts})
 
 
 def network_in(arrays: Mapping[str, npt.NDArray[Any]], place: str) -> Network:

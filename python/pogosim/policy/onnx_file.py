@@ -108,7 +108,7 @@ class Chain:
         if self.width not in (None, columns := layer.weights.shape[1]):
             raise self.refused(node, f"has weights for {columns} values; what is before it gives {self.width}")
         self.layers.append(layer)
-        self.is_open = layer.kind == "dense"
+        self.is_open = isinstance(layer, Dense)
 
 
 def is_nothing(map_: tuple[Floats, Floats]) -> bool:

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.policy import fixed_point, float_arithmetic
+from pogosim.policy import float_arithmetic
 from pogosim.policy.calibration import check_whole, checked_observations, with_ranges
+from pogosim.policy.choices import NUMBERS
 from pogosim.policy.errors import PolicyError
-from pogosim.policy.fixed_point import FixedNetwork
+from pogosim.policy.fixed_arithmetic import FixedNetwork, fixed_step
 from pogosim.policy.network import Network
 from pogosim.policy.npz_file import read_npz, write_npz
-
-NUMBERS = ("float", "int16", "int8")
+from pogosim.policy.quantization import quantized
 
 
 class Policy:
@@ -53,7 +53,7 @@ class Policy:
             self.network = with_ranges(network, rows)
         if numbers != "float":
             check_whole(self.network, rows)
-            self.fixed = fixed_point.fixed_point(self.network, int(numbers.removeprefix("int")))
+            self.fixed = quantized(self.network, int(numbers.removeprefix("int")))
 
     @classmethod
     def load(cls, file: str | Path, *, numbers: str = "float", calibration: npt.ArrayLike | None = None) -> Policy:
@@ -111,16 +111,19 @@ class Policy:
                 outputs, self.state = float_arithmetic.step(self.network, found.astype(np.float32), self.state)
         else:
             whole = np.clip(np.rint(found), self.fixed.input_low, self.fixed.input_high).astype(np.int64)
-            integers, state = fixed_point.fixed_step(self.fixed, whole, self.state.astype(np.int64))
+            integers, state = fixed_step(self.fixed, whole, self.state.astype(np.int64))
             outputs, self.state = integers.astype(np.int32), state.astype(np.int32)
         return outputs
 
     def reset(self, which: Any = None) -> None:
-        """Forget.
+        """Set what recurrent layers remember to 0, as in the beginning.
 
         Args:
             which: Index of the arrays in front of the state, such as a number of a run, or an array of booleans of
                 shape (runs,) or (runs, robots); None: everything, and the next observations may have another shape.
+
+        Raises:
+            IndexError: There is no such run or robot, or the array has another shape.
         """
         if which is None or self.state is None:
             self.state = None

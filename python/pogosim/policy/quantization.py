@@ -1,102 +1,42 @@
-"""A policy in whole numbers, for robots whose processor has no floating-point unit.
+"""Makes whole numbers of a policy, for robots whose processor has no floating-point unit.
 
-Values of layers are integers of 16 bits, which stand for value / 2^fraction_bits; weights are of 8 or 16 bits, each
-row with an exponent of its own; sums are of 32 bits. Everything is derived from the range of the inputs, which are
-cut to it: intervals of integers are followed through the layers, and exponents are chosen such that no sum, product
-or value can leave its type. So nothing can overflow, whatever the robot senses. Errors are followed likewise:
-`error_bound` holds for every input in the range, against the same policy in exact arithmetic; for recurrent policies,
-for a step from the same state.
+Everything is derived from the range of the inputs, which are cut to it: intervals of integers are followed through the
+layers, and exponents are chosen such that no sum, product or value can leave its type. So nothing can overflow,
+whatever the robot senses. Errors are followed likewise: `error_bound` holds for every input in the range, against the
+same policy in exact arithmetic; for recurrent policies, for a step from the same state.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from pogosim.policy.errors import PolicyError
+from pogosim.policy.fixed_arithmetic import (
+    FUNCTIONS,
+    MOST_SUM,
+    MOST_VALUE,
+    OUTPUTS,
+    Affine,
+    FixedLayer,
+    FixedNetwork,
+    Floats,
+    Integers,
+    applied,
+    scaled,
+)
 from pogosim.policy.network import Dense, Elman, Gru, Layer, Network
-from pogosim.policy.tanh_table import sigmoid_of, tanh_of
+from pogosim.policy.tanh_table import ARGUMENT_BITS, ONE, VALUE_BITS
 
-Integers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-
-VALUE_BITS = 14  # of a fraction: 1 is 16384
-ONE = 1 << VALUE_BITS
-MOST_VALUE = 32767
-MOST_SUM = (1 << 30) - 1  # leaves room for rounding
 MOST_INTEGER = (1 << 31) - 1
 MOST_SHIFT = 30
 MOST_LEFT_SHIFT = 12  # arguments are then cut to 7 (tanh) or 14 (sigmoid)
 BEYOND = 2e-6  # what tanh and sigmoid still change beyond that
 MOST_SPAN = 1 << 20  # of an input: more would leave too few bits for its factor
 FEWEST_STEPS = 16  # of an input's range: fewer tell too little
-ARGUMENT_BITS = 12  # of the fraction of what tanh is taken of, which ranges to 8; of sigmoid's one less, to 16
-BITS = (8, 16)
-
-
-@dataclass(frozen=True)
-class Affine:
-    """Integers times factors: (value * factor + addend) >> shift. All have the shape (values,)."""
-
-    factor: Integers
-    addend: Integers
-    shift: Integers
-
-
-@dataclass(frozen=True)
-class FixedLayer:
-    """A layer in whole numbers.
-
-    Attributes:
-        source: The layer in floats.
-        weights: Shape (rows, values before), of 8 or 16 bits; rows are those of the source.
-        recurrent_weights: Shape (rows, units); without rows in a dense layer.
-        bias: What sums begin with. Shape (sums,): (units,), of a GRU (4 units,): reset, keep, new, remembered.
-        shift: By how much the sums are shifted to the right; to the left, if negative. Shape (sums,).
-        new_bits: Fraction bits of the parts of a GRU's new value, before tanh.
-        output_bits: Fraction bits of the values that it gives.
-        most: Values, or arguments of tanh and sigmoid, are cut to this size.
-    """
-
-    source: Layer
-    weights: Integers
-    recurrent_weights: Integers
-    bias: Integers
-    shift: Integers
-    new_bits: int
-    output_bits: int
-    most: int
-
-
-@dataclass(frozen=True)
-class FixedNetwork:
-    """A policy in whole numbers.
-
-    Attributes:
-        source: The policy in floats.
-        bits: Bits of a weight, 8 or 16.
-        input_low: Inputs are cut to this at least. Shape (inputs,).
-        input_high: And to this at most. Shape (inputs,).
-        input_map: What makes values of the first layer of inputs, from which input_low is subtracted.
-        input_bits: Fraction bits of these values.
-        layers: From the inputs to the outputs.
-        output_map: What makes outputs of the last layer's values; None: they are the outputs.
-        error_bound: How far outputs are off at most, in their units. Shape (outputs,).
-    """
-
-    source: Network
-    bits: int
-    input_low: Integers
-    input_high: Integers
-    input_map: Affine
-    input_bits: int
-    layers: tuple[FixedLayer, ...]
-    output_map: Affine | None
-    error_bound: Floats = field(repr=False)
 
 
 @dataclass
@@ -119,14 +59,6 @@ class Values:
     def size(self) -> Integers:
         """Greatest absolute values."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
-
-
-def scaled(sums: Integers, shift: Integers, most: int) -> Integers:
-    """Return sums shifted to the right, rounded, and cut to a size; shapes (..., sums), (sums,)."""
-    right, left = np.maximum(shift, 0), np.maximum(-shift, 0)
-    cut = np.clip(sums, -(most >> left), most >> left) << left
-    shifted = (sums + ((1 << right) >> 1)) >> right
-    return np.where(shift < 0, cut, np.clip(shifted, -most, most))
 
 
 def whole_range(network: Network) -> tuple[Integers, Integers]:
@@ -167,11 +99,6 @@ def affine(factor: Floats, addend: Floats, size: Integers) -> Affine:
         np.rint(np.ldexp(addend, shifts)).astype(np.int64) + half,
         shifts,
     )
-
-
-def applied(made: Affine, values: Integers) -> Integers:
-    """Return an affine map of integers."""
-    return (values * made.factor + made.addend) >> made.shift
 
 
 def affine_error(made: Affine, factor: Floats, size: Integers) -> Floats:
@@ -302,62 +229,43 @@ def bits_that_fit(sums: Sums, most_bits: int) -> int:
     )
 
 
-def argument_bits(activation: str) -> int:
-    """Return the fraction bits of what tanh or sigmoid is taken of."""
-    return ARGUMENT_BITS if activation == "tanh" else ARGUMENT_BITS - 1
+def table_error(name: str, exact: Callable[[Floats], Floats]) -> float:
+    """Return how far the table of tanh or sigmoid is off at most: by trying all arguments, and beyond them."""
+    function = FUNCTIONS[name]
+    assert function.argument_bits is not None
+    arguments = np.arange(-function.most, function.most + 1, dtype=np.int64)
+    wanted = exact(np.ldexp(arguments.astype(float), -function.argument_bits))
+    return float(np.abs(np.ldexp(function.of(arguments).astype(float), -VALUE_BITS) - wanted).max()) + BEYOND
 
 
-def largest_error(activation: str) -> float:
-    """Return how far the table is off at most: by trying all arguments, and beyond them."""
-    arguments = np.arange(-MOST_VALUE, MOST_VALUE + 1, dtype=np.int64)
-    real = np.ldexp(arguments.astype(float), -argument_bits(activation))
-    if activation == "tanh":
-        exact, found = np.tanh(real), tanh_of(arguments)
-    else:
-        exact, found = 1 / (1 + np.exp(-real)), sigmoid_of(arguments)
-    return float(np.abs(np.ldexp(found.astype(float), -VALUE_BITS) - exact).max()) + BEYOND
+TABLE_ERROR = {"tanh": table_error("tanh", np.tanh), "sigmoid": table_error("sigmoid", lambda x: 1 / (1 + np.exp(-x)))}
 
 
-TABLE_ERROR = {name: largest_error(name) for name in ("tanh", "sigmoid")}
-SLOPE = {"tanh": 1.0, "sigmoid": 0.25}  # greatest ones
+def function_error(name: str, sums: Sums, bits: int) -> Floats:
+    """Return how far values are off at most that a function makes of sums with so many fraction bits."""
+    return FUNCTIONS[name].slope * shifted_error(sums, bits) + TABLE_ERROR.get(name, 0.0)
 
 
-def activated(activation: str, values: Integers) -> Integers:
-    """Return an activation of whole numbers: of arguments for tanh and sigmoid, of values for others."""
-    if activation == "tanh":
-        return tanh_of(values)
-    if activation == "sigmoid":
-        return sigmoid_of(values)
-    return np.maximum(values, 0) if activation == "relu" else values
+def layer_of_sums(layer: Dense | Elman, sums: Sums, is_output: bool) -> tuple[FixedLayer, Values]:
+    """Return a layer that has these sums, and what is known of its values.
 
-
-def layer_of_sums(layer: Dense | Elman, sums: Sums, is_last: bool) -> tuple[FixedLayer, Values]:
-    """Return a layer that has these sums, and what is known of its values."""
-    name = layer.activation
-    most = MOST_VALUE
-    if name in SLOPE:
-        bits, output_bits = argument_bits(name), VALUE_BITS
-        error = SLOPE[name] * shifted_error(sums, bits) + TABLE_ERROR[name]
-    elif name == "hardtanh":
-        bits = output_bits = VALUE_BITS
-        most = ONE
-        error = shifted_error(sums, bits)
-    elif name == "identity" and is_last:
-        bits = output_bits = 0
-        most = MOST_SUM
-        error = shifted_error(sums, bits)
+    Raises:
+        PolicyError: They are too large.
+    """
+    if is_output:
         size = float(np.ldexp(np.maximum(-sums.low, sums.high).astype(float), -sums.exponent).max())
         if size > MOST_SUM:
             raise PolicyError(f"outputs may reach {size:.3g}; expected {MOST_SUM} at most, see output_scale")
-    else:
-        bits = output_bits = bits_that_fit(sums, VALUE_BITS)
-        error = shifted_error(sums, bits)
+    name = OUTPUTS if is_output else layer.activation
+    function = FUNCTIONS[name]
+    bits = function.argument_bits if function.argument_bits is not None else bits_that_fit(sums, VALUE_BITS)
+    value_bits = function.value_bits if function.value_bits is not None else bits
     shift = sums.exponent - bits
     check_shift(shift)
-    low, high = (activated(name, scaled(ends, shift, most)) for ends in (sums.low, sums.high))
     recurrent = sums.weights[1] if len(sums.weights) > 1 else np.zeros((0, layer.units), np.int64)
-    made = FixedLayer(layer, sums.weights[0], recurrent, sums.bias, shift, 0, output_bits, most)
-    return made, Values(low, high, output_bits, error)
+    made = FixedLayer(layer, sums.weights[0], recurrent, sums.bias, shift, name)
+    low, high = (function.values_of(ends, shift) for ends in (sums.low, sums.high))
+    return made, Values(low, high, value_bits, function_error(name, sums, bits))
 
 
 def check_shift(shift: Integers) -> None:
@@ -380,14 +288,14 @@ def fixed_gru(layer: Gru, values: Values, bits: int) -> tuple[FixedLayer, Values
     units = layer.units
     weights, recurrent = layer.weights.astype(float), layer.recurrent_weights.astype(float)
     bias = layer.bias.astype(float)
-    bias[: 2 * units] += layer.recurrent_bias[: 2 * units]
     gate, state = slice(0, 2 * units), remembered(units, -ONE)
     gates = sums_of([(weights[gate], values), (recurrent[gate], state)], bias[gate], bits)
     new = sums_of([(weights[2 * units :], values)], bias[2 * units :], bits)
     old = sums_of([(recurrent[2 * units :], state)], layer.recurrent_bias[2 * units :].astype(float), bits)
     new_bits = min(bits_that_fit(new, ARGUMENT_BITS), bits_that_fit(old, ARGUMENT_BITS))
 
-    gate_error = SLOPE["sigmoid"] * shifted_error(gates, argument_bits("sigmoid")) + TABLE_ERROR["sigmoid"]
+    gate_bits = ARGUMENT_BITS - 1
+    gate_error = function_error("sigmoid", gates, gate_bits)
     reset_error, keep_error = gate_error[:units], gate_error[units:]
     old_size = np.ldexp(np.maximum(np.abs(old.low), np.abs(old.high)).astype(float), -old.exponent) + old.error
     sum_error = shifted_error(new, new_bits) + shifted_error(old, new_bits) + old_size * reset_error
@@ -400,16 +308,15 @@ def fixed_gru(layer: Gru, values: Values, bits: int) -> tuple[FixedLayer, Values
         np.concatenate([gates.weights[0], new.weights[0]]),
         np.concatenate([gates.weights[1], old.weights[0]]),
         np.concatenate([gates.bias, new.bias, old.bias]),
-        np.concatenate([gates.exponent - argument_bits("sigmoid"), new.exponent - new_bits, old.exponent - new_bits]),
+        np.concatenate([gates.exponent - gate_bits, new.exponent - new_bits, old.exponent - new_bits]),
+        "gru",
         new_bits,
-        VALUE_BITS,
-        MOST_VALUE,
     )
     check_shift(made.shift)
     return made, Values(state.low, state.high, VALUE_BITS, error)
 
 
-def fixed_layer(layer: Layer, values: Values, bits: int, is_last: bool) -> tuple[FixedLayer, Values]:
+def fixed_layer(layer: Layer, values: Values, bits: int, is_output: bool) -> tuple[FixedLayer, Values]:
     """Return a layer in whole numbers, and what is known of its values.
 
     Raises:
@@ -426,20 +333,22 @@ def fixed_layer(layer: Layer, values: Values, bits: int, is_last: bool) -> tuple
             )
         state = remembered(layer.units, 0 if layer.activation == "sigmoid" else -ONE)
         parts.append((layer.recurrent_weights.astype(float), state))
-    return layer_of_sums(layer, sums_of(parts, layer.bias.astype(float), bits), is_last)
+    return layer_of_sums(layer, sums_of(parts, layer.bias.astype(float), bits), is_output)
+
+
+def gives_outputs(layer: Layer) -> bool:
+    """Tell whether a last layer can have the scale of the outputs in its weights: one without an activation."""
+    return isinstance(layer, Dense) and layer.activation == "identity"
 
 
 def with_outputs_in_weights(network: Network) -> Layer:
-    """Return the last layer, with the scale of the outputs in its weights if its activation is the identity."""
+    """Return a last layer that gives outputs, with their scale in its weights."""
     layer = network.layers[-1]
-    if not isinstance(layer, Dense) or layer.activation != "identity":
-        return layer
     scale, offset = network.output_scale.astype(float), network.output_offset.astype(float)
-    weights = layer.weights.astype(float) * scale[:, None]
-    return Dense(weights, layer.bias.astype(float) * scale + offset, "identity")
+    return Dense(layer.weights.astype(float) * scale[:, None], layer.bias.astype(float) * scale + offset, "identity")
 
 
-def fixed_point(network: Network, bits: int = 16) -> FixedNetwork:
+def quantized(network: Network, bits: int = 16) -> FixedNetwork:
     """Make whole numbers of a policy.
 
     Args:
@@ -452,82 +361,23 @@ def fixed_point(network: Network, bits: int = 16) -> FixedNetwork:
     """
     low, high = whole_range(network)
     input_map, values = inputs_of(network, low, high)
-    input_bits = values.bits
     layers: list[FixedLayer] = []
-    sources = (*network.layers[:-1], with_outputs_in_weights(network))
+    is_scaled = gives_outputs(network.layers[-1])
+    sources = (*network.layers[:-1], with_outputs_in_weights(network)) if is_scaled else network.layers
     for number, layer in enumerate(sources):
-        is_last = number == len(sources) - 1
         try:
-            made, values = fixed_layer(layer, values, bits, is_last)
+            made, values = fixed_layer(layer, values, bits, is_scaled and number == len(sources) - 1)
         except PolicyError as problem:
             raise PolicyError(f"layer {number}: {problem}") from None
         layers.append(made)
-    output_map, error = outputs_of(network, sources[-1], values)
-    return FixedNetwork(
-        network, bits, low, high, input_map, input_bits, tuple(layers), output_map, error * (1 + 1e-9) + 1e-9
-    )
+    output_map, error = (None, values.error) if is_scaled else outputs_of(network, values)
+    bound = error * (1 + 1e-9) + 1e-9
+    return FixedNetwork(network, bits, low, high, input_map, tuple(layers), output_map, bound)
 
 
-def outputs_of(network: Network, last: Layer, values: Values) -> tuple[Affine | None, Floats]:
+def outputs_of(network: Network, values: Values) -> tuple[Affine, Floats]:
     """Return the map that scales the last layer's values to outputs, and how far these are off at most."""
-    if isinstance(last, Dense) and last.activation == "identity":
-        return None, values.error
     scale, offset = network.output_scale.astype(float), network.output_offset.astype(float)
     factor = np.ldexp(scale, -values.bits)
     made = affine(factor, offset, values.size)
     return made, np.abs(scale) * values.error + affine_error(made, factor, values.size)
-
-
-def product(weights: Integers, values: Integers) -> Integers:
-    """Return weights times values. Shapes (rows, values), (..., values)."""
-    # Floats of 64 bits hold every sum exactly, and their products are much faster than those of integers.
-    return np.asarray((values.astype(np.float64) @ weights.T.astype(np.float64)), np.int64)
-
-
-def fixed_gru_step(layer: FixedLayer, values: Integers, state: Integers) -> Integers:
-    """Return the next state of a GRU."""
-    units = layer.source.units
-    sums = np.broadcast_to(layer.bias, (*values.shape[:-1], 4 * units)).copy()
-    sums[..., : 3 * units] += product(layer.weights, values)
-    of_state = product(layer.recurrent_weights, state)
-    sums[..., : 2 * units] += of_state[..., : 2 * units]
-    sums[..., 3 * units :] += of_state[..., 2 * units :]
-    small = scaled(sums, layer.shift, layer.most)
-    reset, keep, new, old = (small[..., part * units : (part + 1) * units] for part in range(4))
-    both = new + ((sigmoid_of(reset) * old + ONE // 2) >> VALUE_BITS)
-    argument = scaled(both, np.array(layer.new_bits - ARGUMENT_BITS), layer.most)
-    candidate = tanh_of(argument)
-    return candidate + ((sigmoid_of(keep) * (state - candidate) + ONE // 2) >> VALUE_BITS)
-
-
-def fixed_layer_step(layer: FixedLayer, values: Integers, state: Integers) -> Integers:
-    """Return what a layer gives, which is its next state if it is recurrent."""
-    if isinstance(layer.source, Gru):
-        return fixed_gru_step(layer, values, state)
-    sums = layer.bias + product(layer.weights, values)
-    if isinstance(layer.source, Elman):
-        sums = sums + product(layer.recurrent_weights, state)
-    return activated(layer.source.activation, scaled(sums, layer.shift, layer.most))
-
-
-def fixed_step(network: FixedNetwork, observation: Integers, state: Integers) -> tuple[Integers, Integers]:
-    """Return the outputs and the next state, the very numbers that the exported C computes.
-
-    Args:
-        network: The policy.
-        observation: Whole numbers. Shape (..., inputs).
-        state: Shape (..., values that are remembered).
-    """
-    above = np.clip(observation, network.input_low, network.input_high) - network.input_low
-    values = applied(network.input_map, above)
-    states: list[Integers] = []
-    begin = 0
-    for layer in network.layers:
-        end = begin + (layer.source.units if layer.source.kind != "dense" else 0)
-        values = fixed_layer_step(layer, values, state[..., begin:end])
-        if end > begin:
-            states.append(values)
-        begin = end
-    if network.output_map is not None:
-        values = applied(network.output_map, values)
-    return values, np.concatenate(states, axis=-1) if states else state
