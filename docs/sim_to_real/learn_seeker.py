@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
 
 try:
     import cma
@@ -20,6 +19,7 @@ try:
     from pogosim.calibration import intervals_of
     from pogosim.errors import ToolError
     from pogosim.learning import SwarmEnv
+    from pogosim.policy import Dense, Policy, network_of
     from pogosim.simulation import SimulationError
 except ImportError as missing:
     if __name__ != "__main__":
@@ -98,21 +98,14 @@ def learn(env: SwarmEnv, generations: int, seed: int) -> Floats:
 def save(env: SwarmEnv, weights: Floats, folder: Path) -> float:
     """Write the policy, and observations of a run with it. Returns its light in episodes of their own, 0 to 1."""
     first, bias, second, last_bias = layers_of(weights, len(env.inputs), len(env.outputs))
-    arrays: dict[str, Any] = env.policy_arrays()
-    layers: dict[str, Any] = {
-        "layer0_weights": first.astype(np.float32),
-        "layer0_bias": bias.astype(np.float32),
-        "layer0_activation": "tanh",
-        "layer1_weights": second.astype(np.float32),
-        "layer1_bias": last_bias.astype(np.float32),
-        "layer1_activation": "hardtanh",
-    }
-    np.savez(folder / "policy.npz", **layers, **arrays)
+    layers = [Dense(first, bias, "tanh"), Dense(second, last_bias, "hardtanh")]
+    network = network_of(layers, **env.policy_arrays())
+    Policy(network).save(folder / "policy.npz")
     found = [episodes(env, np.tile(weights, (len(env), 1)), seed=1_000_000 + one) for one in range(3)]
     seen = np.concatenate([one.reshape(-1, len(env.inputs)) for _, one in found])
     random = np.random.default_rng(1)
     kept = np.concatenate([random.choice(seen, KEPT, replace=False), [seen.min(axis=0), seen.max(axis=0)]])
-    counts = np.rint(kept / arrays["input_scale"] + arrays["input_offset"]).astype(np.int32)
+    counts = np.rint(kept / network.input_scale + network.input_offset).astype(np.int32)
     np.savez(folder / "observations.npz", observations=counts)
     return float(np.mean([light.mean() for light, _ in found]))
 
