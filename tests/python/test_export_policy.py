@@ -13,6 +13,7 @@ import pandas as pd
 import pogosim
 import pytest
 import yaml
+from exported_policy import observe
 from in_process import pogosim as command
 from in_process import refusal
 from pogosim.policy import Dense, Policy, network_of
@@ -86,6 +87,16 @@ def test_full_standard_output_is_named(tmp_path: Path) -> None:
     said = "a.h is complete, but the standard output cannot be written: No space left on device"
     assert done.stderr == f"pogosim export-policy: {said}\n"
     assert (tmp_path / "a.h").exists()
+
+
+def test_page_says_how_much_faster_whole_numbers_are() -> None:
+    page = (ROOT / "docs" / "policy_export.md").read_text()
+    assert "about ten times as fast or more" in " ".join(page.split())
+    rows = re.findall(r"^\| (\d+ inputs, [^|]*) \| (\w+) \|.* \| (\d+) \| [\d.]+ % \|$", page, re.MULTILINE)
+    cycles = {(policy, numbers): int(count) for policy, numbers, count in rows}
+    ratios = [cycles[policy, "float"] / count for (policy, numbers), count in cycles.items() if numbers != "float"]
+    assert len(ratios) == 4
+    assert min(ratios) > 9.5
 
 
 def test_floats_take_many_times_as_long_as_whole_numbers(tmp_path: Path) -> None:
@@ -263,9 +274,7 @@ def test_host_moves_robots_as_a_program_does_that_is_a_tick_late(tmp_path: Path)
         brain = sim.brain("robots")
         sim.step()
         while not sim.is_over:
-            back, left, right = brain.photosensors.astype(int).T
-            seen = np.stack([(back + left + right) // 3, (left + right) // 2 - back, right - left], axis=-1)
-            brain.motors[:, :2] = policy.step(seen)
+            brain.motors[:, :2] = policy.step(observe(brain.photosensors))
             sim.step()
         hosted = sim.to_dataframe()
     hosted = hosted[hosted["robot_category"] == "robots"].sort_values(["time", "robot_id"])

@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from firmwares import firmware_in, project_of, run_firmware
-from pogosim.policy import Dense, Policy, PolicyError, network_of
+from pogosim.policy import Dense, Policy, PolicyError, fixed_arithmetic, float_arithmetic, network_of
+from pogosim.policy.c_functions import OF_FLOATS, OF_INTEGERS
 from pogosim.policy.c_header import header_of
-from pogosim.policy.choices import NUMBERS
+from pogosim.policy.c_text import BYTES
+from pogosim.policy.choices import ACTIVATIONS, NUMBERS
 from pogosim.policy.example_steps import example_steps
 from random_policies import ALL, INPUTS, observations, random_network
 from running import compiler
@@ -178,6 +180,10 @@ def test_sizes_in_the_header_are_those_of_its_arrays(tmp_path: Path) -> None:
     listed = subprocess.run(["nm", "-S", "main.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     sizes = [int(line.split()[1], 16) for line in listed.splitlines() if line.split()[-2] == "r"]
     assert sum(sizes) == header.constant_bytes
+    body = header.text[header.text.index("void policy_step(") :].partition("\n}")[0]
+    arrays = re.findall(r"^    (\w+) \w+\[(\d+)\];$", body, re.MULTILINE)
+    assert [kind for kind, _ in arrays] == ["int16_t", "int16_t", "int32_t"]  # scaled inputs, the last layer, sums
+    assert sum(BYTES[kind] * int(count) for kind, count in arrays) == header.stack_bytes
 
 
 def test_inputs_and_outputs_may_have_any_name_in_c(tmp_path: Path) -> None:
@@ -225,6 +231,12 @@ def test_multiplications_are_those_of_the_emitted_functions(name: str, numbers: 
     header = header_of(policy, example_steps(policy, None), "policy", "a")
     assert header.multiplications == count
     assert f"#define POLICY_MULTIPLICATIONS {count} " in header.text
+
+
+def test_each_activation_is_in_all_tables() -> None:
+    assert [*float_arithmetic.ACTIVATE] == [*ACTIVATIONS]
+    assert [*fixed_arithmetic.FUNCTIONS] == [*ACTIVATIONS, fixed_arithmetic.OUTPUTS]
+    assert {f"next_{name}" for name in ACTIVATIONS} <= OF_FLOATS.keys() & OF_INTEGERS.keys()
 
 
 def test_functions_that_a_policy_does_not_call_are_left_out() -> None:

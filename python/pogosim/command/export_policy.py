@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 EPILOG = """POLICY is an .npz file of NumPy, an .onnx file, or a .pt file with the state_dict() of a PyTorch module:
 layers that see all values before them, Elman layers and GRUs. docs/policy_export.md lists the arrays and operators.
 
-float needs no other file. int16 and int8 compute in whole numbers, which robots do ten times as fast or more; they need
-the range of each input, that of the policy or else of observations of a run: an .npz or .npy file with an array of
-shape (..., inputs), or a data file with a column for each input. Inputs are cut to their range, in floats as well."""
+float needs no other file. int16 and int8 compute in whole numbers, which robots do about ten times as fast or more;
+they need the range of each input, that of the policy or else of observations of a run: an .npz or .npy file with an
+array of shape (..., inputs), or a data file with a column for each input. Inputs are cut to their range, in floats as
+well."""
 MEMORY_BYTES = 128 * 1024  # of a robot, for program, variables and stack
 
 
