@@ -17,7 +17,7 @@ from pogosim.arguments import shown
 from pogosim.learning.quantities import Scaling
 from pogosim.simulation.errors import ConfigurationError, given
 
-Arrays = dict[str, npt.NDArray[Any]]
+Arrays = dict[str, Any]  # of NumPy, by their names: arguments of network_of()
 
 NAMES = {"input": "observation", "output": "actions"}  # the argument of an environment that they are from
 NUMBERS = ("input_offset", "input_scale", "output_offset", "output_scale", "input_low", "input_high")

@@ -16,7 +16,7 @@ from pogosim.arguments import shown, without_numpy
 from pogosim.learning.actions import Actions
 from pogosim.learning.configuration import ConfigurationFile
 from pogosim.learning.judging import End, OfSwarm, Reward, time_limit
-from pogosim.learning.policies import check_policy, policy_arrays
+from pogosim.learning.policies import Arrays, check_policy, policy_arrays
 from pogosim.learning.quantities import Scaling, check_finite, resolved
 from pogosim.learning.randomization import Randomization
 from pogosim.learning.swarm_arrays import SwarmArrays, find_value
@@ -469,7 +469,7 @@ class SwarmEnv:
 
     # ---- Policies
 
-    def policy_arrays(self) -> dict[str, Any]:
+    def policy_arrays(self) -> Arrays:
         """Return the arrays that say what inputs and outputs are.
 
         To save them with a policy: Policy(network_of(layers, **env.policy_arrays())).save("policy.npz").

@@ -46,7 +46,7 @@ def sizes_in(layer: Layer, before: Floats) -> tuple[Floats, Floats]:
     return sums + (np.abs(layer.recurrent_bias.astype(float)) if isinstance(layer, Gru) else 0.0), ones
 
 
-def check_size(place: str, sizes: Floats) -> None:
+def check_fits(place: str, sizes: Floats) -> None:
     """Check that numbers of these sizes are floats of 32 bits.
 
     Raises:
@@ -72,14 +72,14 @@ def check_overflow(network: Network) -> str | None:
     """
     offset, scale = network.input_offset.astype(float)[:, None], np.abs(network.input_scale.astype(float))[:, None]
     distance = np.where(np.isnan(network.input_range), 1 / scale, np.abs(network.input_range.astype(float) - offset))
-    check_size("an input minus input_offset", distance)
+    check_fits("an input minus input_offset", distance)
     values = (distance * scale).max(axis=1)
-    check_size("an input after scaling", values)
+    check_fits("an input after scaling", values)
     for number, layer in enumerate(network.layers):
         sums, values = sizes_in(layer, values)
         if not np.isfinite(sums).all():
             return f"layer {number} adds up what it remembers, and may grow until its numbers overflow"
-        check_size(f"a sum of layer {number}", sums)
+        check_fits(f"a sum of layer {number}", sums)
     products = values * np.abs(network.output_scale.astype(float))
-    check_size("an output", products + np.abs(network.output_offset.astype(float)))
+    check_fits("an output", products + np.abs(network.output_offset.astype(float)))
     return None
