@@ -126,7 +126,8 @@ def step(network: Network, observation: npt.NDArray[np.float32], state: Floats) 
         observation: Shape (..., inputs), in their units.
         state: Shape (..., values that are remembered).
     """
-    values = (cut(observation, *network.input_ends) - network.input_offset) * network.input_scale
+    inside = cut(observation, *network.input_ends) if network.has_range else observation
+    values = (inside - network.input_offset) * network.input_scale
     states = network.split_state(state)
     for number, layer in enumerate(network.layers):
         values = next_of(layer, values, states[number])

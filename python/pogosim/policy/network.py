@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -178,12 +179,12 @@ class Network:
         """Number of outputs."""
         return len(self.output_names)
 
-    @property
+    @cached_property
     def has_range(self) -> bool:
         """Whether the range of an input is known."""
         return not np.isnan(self.input_range).all()
 
-    @property
+    @cached_property
     def input_ends(self) -> tuple[Floats, Floats]:
         """What inputs are cut to: their range, or all floats of 32 bits where it is unknown. Shapes (inputs,)."""
         everything = np.array([-MOST_FLOAT, MOST_FLOAT], np.float32)
