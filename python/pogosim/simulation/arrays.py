@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.errors import ConfigurationError, given
+from pogosim.simulation.forked import check_process
 from pogosim.simulation.library import ArrayPlace, OpenRun, check, library
 
 NO_BODY = 2**32 - 1
@@ -72,14 +73,6 @@ def chosen_rows(name: str, chosen: Any, count: int, what: str, where: str) -> np
     if len(outside):
         raise ConfigurationError(f"{name}: there is no {what} {outside[0]}: {where} {count}")
     return rows
-
-
-def check_process(process: int) -> None:
-    """Raise SimulationError in a child of the process that has made a run: both would write the same files."""
-    if os.getpid() != process:
-        raise SimulationError(
-            f"the simulation belongs to process {process}, which has forked this one: make one of its own here"
-        )
 
 
 class RunState:

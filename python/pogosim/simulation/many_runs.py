@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from ctypes import byref, c_void_p, string_at
@@ -15,16 +13,11 @@ import numpy.typing as npt
 
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import SimulationError
+from pogosim.simulation.forked import finalize_here
 from pogosim.simulation.library import OK, OVER, ArrayPlace, Exchange, Turn, check, error_of_step, library
 from pogosim.simulation.run import SLICE_S
 
 IN_USE = "a simulation is in use by another thread: give each thread one of its own"
-
-
-def close_threads(handle: c_void_p, process: int) -> None:
-    """End the threads of a handle, unless this is a forked child, which has none of them."""
-    if os.getpid() == process:
-        library().pogosim_threads_close(handle)
 
 
 class RunThreads:
@@ -37,7 +30,7 @@ class RunThreads:
     def __init__(self, count: int) -> None:
         self._handle = c_void_p()
         check(library().pogosim_threads_open(count, byref(self._handle)))
-        self.close = weakref.finalize(self, close_threads, self._handle, os.getpid())
+        self.close = finalize_here(self, library().pogosim_threads_close, self._handle)
 
     def step(self, runs: ManyRuns, exchanges: Sequence[Exchange]) -> dict[int, SimulationError]:
         """Let runs make steps for a while, each at least one. Returns what went wrong, by the index of the run.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import logging
 import math
-import os
 import threading
 from collections.abc import Iterator, Mapping, MutableMapping
 from multiprocessing.util import Finalize
@@ -22,10 +21,11 @@ from pogosim.lines import printable
 from pogosim.nearest_name import advice
 from pogosim.outputs import PathLike
 from pogosim.simple_yaml import simple_yaml
-from pogosim.simulation.arrays import NO_BODY, Columns, RunState, check_process, writable
+from pogosim.simulation.arrays import NO_BODY, Columns, RunState, writable
 from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
+from pogosim.simulation.forked import check_process, is_forked
 from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, in_words_of_python, library
 from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
@@ -345,7 +345,7 @@ class Simulation:
 
     def close(self) -> None:
         """End the run. Its memory is freed as soon as no array of it is left."""
-        if os.getpid() != self._current.process:  # a forked child: its parent goes on
+        if is_forked(self._current.process):  # a forked child: its parent goes on
             self._is_closed = True
             return
         with self._busy():
@@ -379,7 +379,7 @@ class Simulation:
 
     def __repr__(self) -> str:
         run = self._current.run
-        if run is None or self._is_closed or os.getpid() != self._current.process:
+        if run is None or self._is_closed or is_forked(self._current.process):
             state = "closed"
         else:
             state = f"t = {run.number('time'):g} s of {run.number('step_count') * run.number('time_step'):g} s"

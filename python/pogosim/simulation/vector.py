@@ -17,8 +17,9 @@ import numpy.typing as npt
 from pogosim.arguments import shown
 from pogosim.firmware import is_firmware
 from pogosim.outputs import PathLike
-from pogosim.simulation.arrays import RunState, check_process, chosen_rows
+from pogosim.simulation.arrays import RunState, chosen_rows
 from pogosim.simulation.errors import ConfigurationError, SimulationError, given
+from pogosim.simulation.forked import check_process, is_forked
 from pogosim.simulation.library import OK, OVER
 from pogosim.simulation.many_runs import ManyRuns, RunThreads, all_held
 from pogosim.simulation.objects import chosen_index
@@ -428,7 +429,7 @@ class VectorSimulation:
             SimulationError: Another thread uses one of them; none is closed then.
         """
         self._check_outside("close")
-        if os.getpid() == self._process and not self._is_closed:
+        if not is_forked(self._process) and not self._is_closed:
             with self._all_held():
                 pass
         self._is_closed = True
@@ -436,7 +437,7 @@ class VectorSimulation:
             simulation.close()
         self._many = ManyRuns([])
         self._stepping.close()
-        self._threads.shutdown(wait=os.getpid() == self._process)
+        self._threads.shutdown(wait=not is_forked(self._process))
 
     def __len__(self) -> int:
         return len(self.simulations)
