@@ -1,6 +1,7 @@
 """How many robot-steps an environment for learning makes per second, with a policy in NumPy, beside VMAS and JaxMARL.
 
-    .venv/bin/python bench/learning.py [--runs 256] [--robots 20] [--steps 100] [--vmas PYTHON] [--jaxmarl PYTHON]
+    .venv/bin/python bench/learning.py [--runs 256] [--robots 20] [--steps 100] [--threads N]
+                                       [--vmas PYTHON] [--jaxmarl PYTHON]
 
 A `SwarmEnv` of many runs: a policy multiplies what the robots see (three light sensors; with communication also the
 messages that they heard) with a matrix, and gives them powers of motors, and a message of 4 bytes to send at every
@@ -11,8 +12,8 @@ are of 0.1 s, if PYTHON, the program, has the package `vmas`, which is not one o
 scenario `simple_spread`, also of 0.1 s: as many landmarks as agents, each of which sees all others. Policy and steps
 are compiled as one loop, and compiling does not count.
 
-Times are processor time, with one thread each, so that other work on the machine counts less; the rows take turns, and
-the best of ROUNDS counts.
+Times are processor time, with one thread each, so that other work on the machine counts less; with --threads, they are
+wall-clock time, and each simulator has so many threads. The rows take turns, and the best of ROUNDS counts.
 """
 
 from __future__ import annotations
@@ -43,27 +44,30 @@ ROUNDS = 3
 VMAS = """
 import sys, time
 import torch, vmas
-torch.set_num_threads(1)
-runs, robots, steps = map(int, sys.argv[1:])
+runs, robots, steps, threads = map(int, sys.argv[1:])
+now_s = time.perf_counter if threads else time.process_time
+torch.set_num_threads(max(1, threads))
 env = vmas.make_env("flocking", num_envs=runs, device="cpu", continuous_actions=True, seed=1, n_agents=robots)
 seen = env.reset()
 matrix = torch.rand(seen[0].shape[1], env.get_agent_action_size(env.agents[0])) - 0.5
 with torch.no_grad():
     for _ in range(2):
         seen = env.step([torch.tanh(own @ matrix) for own in seen])[0]
-    start_s = time.process_time()
+    start_s = now_s()
     for _ in range(steps):
         seen = env.step([torch.tanh(own @ matrix) for own in seen])[0]
-print(time.process_time() - start_s, env.world.dt)
+print(now_s() - start_s, env.world.dt)
 """
 
 JAXMARL = """
 import os, sys, time
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+runs, robots, steps, threads = map(int, sys.argv[1:])
+now_s = time.perf_counter if threads else time.process_time
+os.environ["XLA_FLAGS"] = f"--xla_cpu_multi_thread_eigen={str(threads > 1).lower()} "
+os.environ["XLA_FLAGS"] += f"intra_op_parallelism_threads={max(1, threads)}"
 os.environ["JAX_PLATFORMS"] = "cpu"
 import jax, jax.numpy as jnp
 from jaxmarl import make
-runs, robots, steps = map(int, sys.argv[1:])
 env = make("MPE_simple_spread_v3", num_agents=robots, num_landmarks=robots, action_type="Continuous", max_steps=10**9)
 keys = jax.random.split(jax.random.PRNGKey(1), runs)
 seen, state = jax.vmap(env.reset)(keys)
@@ -79,9 +83,9 @@ def step(carry, _):
 
 go_on = jax.jit(lambda carry: jax.lax.scan(step, carry, length=steps))
 carry, _ = jax.block_until_ready(go_on((keys, seen, state)))
-start_s = time.process_time()
+start_s = now_s()
 carry, reward = jax.block_until_ready(go_on(carry))
-print(time.process_time() - start_s, env.dt)
+print(now_s() - start_s, env.dt)
 """
 
 
@@ -91,8 +95,8 @@ class Row:
 
     Attributes:
         name: What is measured.
-        decision_s: Simulated time of a step.
-        measure: Makes steps of all runs, and returns the processor time, s.
+        decision_s: Simulated time of a step, s.
+        measure: Makes steps of all runs, and returns the time that they took, s.
     """
 
     name: str
@@ -114,15 +118,15 @@ def scene(robots: int) -> dict[str, Any]:
     }
 
 
-def seconds_of(env: SwarmEnv, steps: int) -> float:
-    """Measure steps of an environment with its policy."""
+def seconds_of(env: SwarmEnv, steps: int, now_s: Callable[[], float]) -> float:
+    """Measure steps of an environment with its policy, by a clock."""
     matrix = np.random.default_rng(1).uniform(-0.5, 0.5, (len(env.inputs), len(env.outputs))).astype(np.float32)
     observation, _ = env.reset(seed=1)
     for step in range(2 + steps):
         if step == 2:
-            start_s = time.process_time()
+            start_s = now_s()
         observation, *_ = env.step(np.tanh(1.0 + observation @ matrix))
-    return float(time.process_time() - start_s)
+    return now_s() - start_s
 
 
 def row(name: str, ticks: int, talks: bool, options: argparse.Namespace) -> Row:
@@ -136,15 +140,16 @@ def row(name: str, ticks: int, talks: bool, options: argparse.Namespace) -> Row:
         end=1e6,
         runs=options.runs,
         decision_s=ticks * STEP_S,
-        threads=1,
+        threads=options.threads or 1,
     )
-    return Row(name, ticks * STEP_S, lambda: seconds_of(env, options.steps))
+    clock = time.perf_counter if options.threads else time.process_time
+    return Row(name, ticks * STEP_S, lambda: seconds_of(env, options.steps, clock))
 
 
 def other_row(name: str, python: str, option: str, code: str, options: argparse.Namespace) -> Row:
     """Return the row of another simulator, in a process of the Python that has it."""
     steps = max(1, options.steps // 4)
-    command = [python, "-c", code, *map(str, (options.runs, options.robots, steps))]
+    command = [python, "-c", code, *map(str, (options.runs, options.robots, steps, options.threads or 0))]
 
     def measure() -> float:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -164,6 +169,7 @@ def main() -> None:
     parser.add_argument("--runs", type=at_least_one, default=256, help="runs at once, default %(default)s")
     parser.add_argument("--robots", type=at_least_one, default=20, help="robots of each run, default %(default)s")
     parser.add_argument("--steps", type=at_least_one, default=100, help="steps of each measurement")
+    parser.add_argument("--threads", type=at_least_one, help="threads; default: one, by processor time")
     parser.add_argument("--vmas", metavar="PYTHON", help="a Python that has the package vmas, to measure beside")
     parser.add_argument("--jaxmarl", metavar="PYTHON", help="a Python that has the package jaxmarl, likewise")
     options = parser.parse_args()
