@@ -10,7 +10,7 @@ import pogosim
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pogosim.learning.condition import Expression
+from pogosim.learning.expression import Expression
 from running import write_scene
 
 VALUES = {

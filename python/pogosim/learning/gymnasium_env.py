@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import without_numpy
-from pogosim.learning.shims import RENDER_MODES, RUN, Rendering, agent_is_robot, info_of_run, needs, one_run
+from pogosim.learning.interfaces import RENDER_MODES, RUN, Rendering, agent_is_robot, info_of_run, needs, one_run
 from pogosim.learning.swarm_env import SwarmEnv
 
 try:

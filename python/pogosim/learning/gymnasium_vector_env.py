@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.learning.shims import RENDER_MODES, ROBOT, Rendering, agent_is_robot, needs, swarm_env
+from pogosim.learning.interfaces import RENDER_MODES, ROBOT, Rendering, agent_is_robot, needs, swarm_env
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.simulation import ConfigurationError
 from pogosim.simulation.errors import given

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.learning.shims import RENDER_MODES, Rendering, info_of_run, needs, one_run
+from pogosim.learning.interfaces import RENDER_MODES, Rendering, info_of_run, needs, one_run
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.simulation import ConfigurationError
 

@@ -15,10 +15,10 @@ import numpy.typing as npt
 from pogosim.arguments import shown, without_numpy
 from pogosim.learning.actions import Actions
 from pogosim.learning.configuration import ConfigurationFile
-from pogosim.learning.judging import End, OfSwarm, Reward, time_limit
-from pogosim.learning.policies import Arrays, check_policy, policy_arrays
+from pogosim.learning.policy_check import Arrays, check_policy, policy_arrays
 from pogosim.learning.quantities import Scaling, check_finite, resolved
 from pogosim.learning.randomization import Randomization
+from pogosim.learning.reward_and_end import End, OfSwarm, Reward, time_limit
 from pogosim.learning.swarm_arrays import SwarmArrays, find_value
 from pogosim.outputs import PathLike
 from pogosim.simulation import ConfigurationError, SavedState, SimulationError, VectorSimulation

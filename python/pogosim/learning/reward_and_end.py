@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.learning.condition import Expression
+from pogosim.learning.expression import Expression
 from pogosim.learning.quantities import check_finite
 from pogosim.learning.swarm_arrays import SwarmArrays, all_names
 from pogosim.simulation import ConfigurationError
