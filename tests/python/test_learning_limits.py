@@ -25,9 +25,9 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"randomize": {"time_step": [0.02, 0.025]}}, "randomize: time_step cannot be drawn"),
     ({"randomize": {"simulation_time": [1, 2]}}, "randomize: simulation_time cannot be drawn"),
     ({"randomize": {"seed": [1, 2]}}, "randomize: seed cannot be drawn"),
-    ({"randomize": {"k": {"type": [1]}}}, "randomize: k.type: expected one of float"),
+    ({"randomize": {"k": {"type": [1]}}}, "randomize: k.type: expected int, float"),
     ({"randomize": {"k": [-1e308, 1.7e308]}}, "the interval from -1e+308 to 1.7e+308 is too wide"),
-    ({"randomize": {"k": {"type": "int", "min": -(10**30), "max": 1}}}, "randomize: k.min: expected an integer"),
+    ({"randomize": {"k": {"type": "int", "min": -(10**30), "max": 1}}}, "randomize: k: min: expected a whole number"),
     ({"set": {"simulation_time": 5}}, "set: simulation_time is that of `end`"),
 ]
 

@@ -346,8 +346,27 @@ def test_keys_are_drawn_for_each_episode(domain: Any, fits: Any) -> None:
         assert np.array_equal(*drawn)
         assert all(map(fits, drawn[0].tolist()))
         assert len(set(drawn[0].tolist())) > 1
-        used = [sim._settings[key] for sim in env.runs]
-        assert used == drawn[0].tolist()
+
+
+def test_robots_are_what_was_drawn() -> None:
+    key = "objects.robots.max_linear_speed"
+    with hosted_env(placed([500, 500, 0]), randomize={key: [20, 80]}, runs=6, reward="speed", end=5.0) as env:
+        drawn = env.reset(seed=1)[1]["randomized"][key]
+        for _ in range(20):
+            speeds = env.step(np.ones((6, 1, 2)))[1][:, 0]
+        assert speeds == pytest.approx(drawn, rel=0.01)
+        assert len(set(drawn.tolist())) == 6
+
+
+def test_domains_are_those_of_searches_and_may_be_of_one_value() -> None:
+    from pogosim.learning.randomization import draw_of
+
+    generator = np.random.default_rng(1)
+    whole = draw_of("x", {"type": "int", "min": 1, "max": 3, "init": 2})
+    assert {whole(generator) for _ in range(60)} == {1, 2, 3}
+    chosen = draw_of("x", {"choices": ["a", "b"]})
+    assert {chosen(generator) for _ in range(60)} == {"a", "b"}
+    assert draw_of("x", [0.2, 0.2])(generator) == 0.2
 
 
 def test_intervals_are_uniform_and_logarithms_too() -> None:
