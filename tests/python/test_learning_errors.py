@@ -264,6 +264,19 @@ def test_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
             assert f"{name} cannot be read as an .npz file of NumPy: " in refusal(error)
 
 
+@pytest.mark.parametrize("first", [GymnasiumEnv, GymnasiumVectorEnv, PettingZooEnv])
+@pytest.mark.parametrize("second", [GymnasiumEnv, GymnasiumVectorEnv, PettingZooEnv])
+def test_environment_has_one_interface(first: Any, second: Any) -> None:
+    with hosted_env() as env:
+        with pytest.raises(pogosim.ConfigurationError, match="render_mode"):
+            first(env, render_mode="ansi")
+        assert (env.interface, env.autoreset) == ("", "NextStep")  # one that was refused drives nothing
+        first(env)
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            second(env)
+        assert refusal(error) == f"env: a {first.__name__} drives this SwarmEnv: make another one"
+
+
 def test_interfaces_refuse_environments_that_they_cannot_be_of() -> None:
     with hosted_env(runs=2) as two, hosted_env() as one:
         for make, message in (

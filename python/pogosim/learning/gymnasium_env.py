@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import without_numpy
-from pogosim.learning.interfaces import RENDER_MODES, RUN, Rendering, agent_is_robot, info_of_run, needs, one_run
-from pogosim.learning.swarm_env import SwarmEnv
+from pogosim.learning.interfaces import RENDER_MODES, RUN, Rendering, agent_is_robot, drive, info_of_run, needs, one_run
+from pogosim.learning.swarm_env import DISABLED, SwarmEnv
 
 try:
     import gymnasium
@@ -43,7 +43,7 @@ class GymnasiumEnv(gymnasium.Env[Array, Array]):
             render_mode: None, "rgb_array", or "human": a page in a browser, or a view in a notebook, in real time.
 
         Raises:
-            ConfigurationError: There are more runs, or with each="robot" more robots.
+            ConfigurationError: An interface drives it already, there are more runs, or with each="robot" more robots.
         """
         self.swarm_env = one_run(env)
         self._is_robot = agent_is_robot(each, env, most=1)
@@ -52,6 +52,7 @@ class GymnasiumEnv(gymnasium.Env[Array, Array]):
         self._rendering = Rendering(env, render_mode)
         self.observation_space = self._box(env.observation_low, env.observation_high)
         self.action_space = self._box(env.action_low, env.action_high)
+        drive(env, self, DISABLED)
 
     def _box(self, low: Array, high: Array) -> Any:
         if self._is_robot:

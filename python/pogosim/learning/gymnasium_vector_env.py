@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.learning.interfaces import RENDER_MODES, ROBOT, Rendering, agent_is_robot, needs, swarm_env
+from pogosim.learning.interfaces import RENDER_MODES, ROBOT, Rendering, agent_is_robot, drive, needs, swarm_env
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.simulation import ConfigurationError
 from pogosim.simulation.errors import given
@@ -46,7 +46,7 @@ class GymnasiumVectorEnv(VectorEnv[Array, Array, Array]):
             render_mode: None, "rgb_array", or "human": the first run, see `GymnasiumEnv`.
 
         Raises:
-            ConfigurationError: An argument is wrong.
+            ConfigurationError: An argument is wrong, or an interface drives the environment already.
         """
         self.swarm_env = swarm_env(env)
         self._is_robot = agent_is_robot(each, env)
@@ -63,6 +63,7 @@ class GymnasiumVectorEnv(VectorEnv[Array, Array, Array]):
         self.single_action_space = self._box(env.action_low, env.action_high)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
+        drive(env, self, env.autoreset)
 
     def _box(self, low: Array, high: Array) -> spaces.Box:
         shape = () if self._is_robot else (self.swarm_env.robots,)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from pogosim.extras import installing
 from pogosim.learning.human_view import HumanView
-from pogosim.learning.swarm_env import DISABLED, SwarmEnv
+from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.simulation import ConfigurationError
 from pogosim.simulation.errors import given
 
@@ -23,18 +23,20 @@ def needs(package: str) -> str:
 
 
 def swarm_env(env: Any) -> SwarmEnv:
-    """Return an environment of plain arrays.
+    """Return an environment of plain arrays that no interface drives.
 
     Raises:
-        ConfigurationError: It is none.
+        ConfigurationError: It is none, or one drives it: both would step the same runs.
     """
     if not isinstance(env, SwarmEnv):
         raise given.refused("env", "a SwarmEnv", env)
+    if env.interface:
+        raise ConfigurationError(f"env: a {env.interface} drives this SwarmEnv: make another one")
     return env
 
 
 def one_run(env: Any) -> SwarmEnv:
-    """Return an environment with one run, whose episodes begin by `reset` alone from now on.
+    """Return an environment with one run that no interface drives.
 
     Raises:
         ConfigurationError: It is none, or has more runs.
@@ -42,8 +44,13 @@ def one_run(env: Any) -> SwarmEnv:
     swarm = swarm_env(env)
     if len(swarm) != 1:
         raise ConfigurationError(f"env: expected a SwarmEnv with runs=1, found {len(swarm)}: use GymnasiumVectorEnv")
-    swarm.autoreset = DISABLED
     return swarm
+
+
+def drive(env: SwarmEnv, interface: object, autoreset: str) -> None:
+    """Let an interface drive an environment, whose episodes begin anew as it says from now on."""
+    env.interface = type(interface).__name__
+    env.autoreset = autoreset
 
 
 def agent_is_robot(each: Any, env: SwarmEnv, *, most: int | None = None) -> bool:

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.arguments import shown
-from pogosim.learning.interfaces import RENDER_MODES, Rendering, info_of_run, needs, one_run
-from pogosim.learning.swarm_env import SwarmEnv
+from pogosim.learning.interfaces import RENDER_MODES, Rendering, drive, info_of_run, needs, one_run
+from pogosim.learning.swarm_env import DISABLED, SwarmEnv
 from pogosim.simulation import ConfigurationError
 
 try:
@@ -47,7 +47,7 @@ class PettingZooEnv(ParallelEnv[str, Array, Array]):
             render_mode: As of `GymnasiumEnv`.
 
         Raises:
-            ConfigurationError: There are more runs.
+            ConfigurationError: An interface drives it already, there are more runs.
         """
         self.swarm_env = one_run(env)
         self.metadata = {**self.metadata, "render_fps": round(1 / env.decision_s)}
@@ -59,6 +59,7 @@ class PettingZooEnv(ParallelEnv[str, Array, Array]):
             agent: spaces.Box(env.observation_low, env.observation_high) for agent in self.possible_agents
         }
         self.action_spaces = {agent: spaces.Box(env.action_low, env.action_high) for agent in self.possible_agents}
+        drive(env, self, DISABLED)
 
     def observation_space(self, agent: str) -> spaces.Space[Array]:
         """What an agent sees."""

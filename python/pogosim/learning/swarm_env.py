@@ -179,6 +179,7 @@ class SwarmEnv:
         decision_s: Time from one decision to the next, s.
         episode_steps: After so many steps an episode is truncated.
         autoreset: "NextStep", "SameStep" or "Disabled".
+        interface: The class whose object drives it, such as "GymnasiumEnv"; empty: none.
     """
 
     def __init__(
@@ -227,6 +228,7 @@ class SwarmEnv:
             SimulationError: There is no simulator.
         """
         self.autoreset = autoreset_mode(autoreset)
+        self.interface = ""
         self._randomization = Randomization(randomize)
         self.decision_s = given.finite("decision_s", decision_s)
         task = Task(observation, actions, reward, end, given.text("category", category))
