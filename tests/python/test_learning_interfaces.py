@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium
@@ -159,17 +160,22 @@ def test_pictures_are_those_of_the_runs() -> None:
 
 
 def test_person_sees_the_run_in_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    import time
     import urllib.request
 
     opened: list[str] = []
+    waits_s: list[float] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
-    env = GymnasiumEnv(env_of(), render_mode="human")
+    clock = SimpleNamespace(monotonic=lambda: 5.0 + sum(waits_s), sleep=waits_s.append)
+    monkeypatch.setattr("pogosim.learning.human_view.time", clock)
+    env = GymnasiumEnv(env_of(end=1.0), render_mode="human")
     env.reset(seed=1)
-    begin_s = time.monotonic()
     for _ in range(4):
         env.step(np.zeros((ROBOTS, 4), np.float32))
-    assert time.monotonic() - begin_s > 0.35
+    assert waits_s == pytest.approx([0.1] * 4)
+    waits_s.append(0.25)  # the learner takes its time
+    for _ in range(2):
+        env.step(np.zeros((ROBOTS, 4), np.float32))
+    assert waits_s[-2:] == pytest.approx([0.0, 0.1])
     env.reset()
     (address,) = opened
     with urllib.request.urlopen(address) as page:
