@@ -1,7 +1,7 @@
 """What is imported when it is used for the first time, by modules that may not need it.
 
-    from pogosim.deferred import pandas as pd                 # a large package
-    __getattr__ = on_demand(__name__, {"Columns": "arrays"})  # names of a package of ours, and their modules
+    from pogosim.deferred import pandas as pd  # a large package
+    __getattr__, __dir__ = on_demand(__name__, {"Columns": "arrays"})  # names of a package of ours, and their modules
 
 A window in a browser, for example, imports how columns are drawn, but no table comes before one is asked for.
 """
@@ -28,12 +28,12 @@ class Deferred(ModuleType):
         return getattr(importlib.import_module(self.__name__), name)
 
 
-def on_demand(package: str, modules: Mapping[str, str]) -> Callable[[str], Any]:
-    """Return the function `__getattr__` of a package that imports its modules when one of its names is asked for.
+def on_demand(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return the functions `__getattr__` and `__dir__` of a package that imports its modules when a name is asked for.
 
     Args:
-        package: its name.
-        modules: of each name that it offers, the module in it.
+        package: The name of the package.
+        modules: The module of each name that the package offers.
     """
 
     def attribute(name: str) -> Any:
@@ -43,7 +43,10 @@ def on_demand(package: str, modules: Mapping[str, str]) -> Callable[[str], Any]:
         setattr(sys.modules[package], name, found)
         return found
 
-    return attribute
+    def names() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *modules})
+
+    return attribute, names
 
 
 if TYPE_CHECKING:

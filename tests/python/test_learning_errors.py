@@ -57,14 +57,20 @@ WRONG_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"randomize": {"seed": 3}}, "randomize: seed: expected an interval [low, high], a list of values"),
     ({"randomize": {"seed": [3, 1]}}, "randomize: seed: expected low <= high, found [3, 1]"),
     ({"randomize": {"seed": []}}, "randomize: seed: expected at least one value to choose from, found []"),
-    ({"randomize": {"k": {"type": "flot"}}}, "randomize: k.type: expected int, float, categorical or normal, found 'fl"),
+    (
+        {"randomize": {"k": {"type": "flot"}}},
+        "randomize: k.type: expected int, float, categorical or normal, found 'fl",
+    ),
     ({"randomize": {"k": {"type": "int", "min": 1}}}, "randomize: k: max: expected a whole number, found nothing"),
     ({"randomize": {"k": {"type": "int", "maxx": 3}}}, "randomize: k: unknown key 'maxx'; did you mean 'max'?"),
     (
         {"randomize": {"k": {"type": "float", "min": 0, "max": 3, "log": True}}},
         "randomize: k: log: true needs a min above 0, found 0",
     ),
-    ({"randomize": {"k": {"type": "normal", "mean": 0}}}, "randomize: k: a domain of type normal needs the key 'stddev"),
+    (
+        {"randomize": {"k": {"type": "normal", "mean": 0}}},
+        "randomize: k: a domain of type normal needs the key 'stddev",
+    ),
     (
         {"randomize": {"k": {"type": "normal", "mean": 0, "stddev": -1}}},
         "randomize: k.stddev: expected a number of at least 0, found -1.0",
@@ -85,6 +91,11 @@ def test_wrong_argument_is_named_with_what_is_expected(options: dict[str, Any], 
     with pytest.raises(pogosim.ConfigurationError) as error:
         hosted_env(**options)
     assert message in refusal(error)
+
+
+def test_argument_that_does_not_exist_is_one_of_the_environment() -> None:
+    with pytest.raises(TypeError, match=r"SwarmEnv\.__init__\(\) got an unexpected keyword argument 'thread'"):
+        hosted_env(thread=2)
 
 
 def test_configuration_that_is_none_is_refused() -> None:
@@ -258,10 +269,14 @@ def test_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text("weights")
     np.save(tmp_path / "one.npy", np.zeros(2))
     with hosted_env() as env:
-        for name in ("text.npz", "one.npy", "none.npz"):
+        for name, message in (
+            ("text.npz", "is damaged, or no .npz file of NumPy"),
+            ("one.npy", "is damaged, or no .npz file of NumPy"),
+            ("none.npz", "cannot be read: No such file or directory"),
+        ):
             with pytest.raises(pogosim.ConfigurationError) as error:
                 env.check_policy(tmp_path / name)
-            assert f"{name} cannot be read as an .npz file of NumPy: " in refusal(error)
+            assert f"{name} {message}" in refusal(error)
 
 
 @pytest.mark.parametrize("first", [GymnasiumEnv, GymnasiumVectorEnv, PettingZooEnv])

@@ -80,6 +80,12 @@ def test_environments_are_not_copied_and_info_is_read_only() -> None:
         _, info = env.reset(seed=np.array(5))  # type: ignore[arg-type]
         with pytest.raises(ValueError, match="read-only"):
             info["seed"][0] = 1
+        info.clear()
+        *_, info = env.step(np.zeros((1, env.robots, 2)))
+        assert set(info) == {"seed", "randomized"}
+        for array in (env.swarm.positions, env.swarm["light"], env.swarm["photosensors"], env.swarm["x"]):
+            with pytest.raises(ValueError, match="read-only"):
+                array += 1
 
 
 def test_interfaces_take_seeds_of_numpy_and_refuse_options_that_are_no_map() -> None:

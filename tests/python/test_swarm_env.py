@@ -67,8 +67,6 @@ def test_actions_are_cut_scaled_and_rounded() -> None:
         env.reset(seed=1)
         wanted = np.zeros((1, ROBOTS, 2 + 1 + 15))
         wanted[0, 0, :3] = [0.5, -7, 2]
-        with pytest.raises(pogosim.ConfigurationError, match="there twice"):
-            hosted_env(actions=["motors", "motors"])
         wanted[0, 0, 3:] = np.arange(15) + 0.4
         env.step(wanted)
         brain = env.runs.brain("robots")
@@ -138,6 +136,15 @@ def test_rows_are_recorded_only_if_a_column_is_used() -> None:
         with SwarmEnv(example("learning"), scene(SETTINGS), reward=reward, **options) as env:
             env.reset(seed=1)
             assert bool(env.runs[0].columns) == is_recorded
+
+
+def test_runs_write_no_data_file_unless_a_column_is_used(tmp_path: Path) -> None:
+    options: dict[str, Any] = {"observation": [("user_data.observation", -1, 1)], "end": 1.0}
+    options |= {"actions": [("user_data.action", -1, 1)], "set": {"data_filename": str(tmp_path / "data.feather")}}
+    for reward, is_written in (("light", False), ("column.light", True)):
+        with SwarmEnv(example("learning"), scene(SETTINGS), reward=reward, **options) as env:
+            env.reset(seed=1)
+        assert (tmp_path / "data.feather").exists() == is_written
 
 
 def hosted_program_env(hosted: Path, **options: Any) -> SwarmEnv:

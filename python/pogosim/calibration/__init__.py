@@ -11,4 +11,4 @@ if TYPE_CHECKING:
 
 __all__ = ["intervals_of"]
 
-__getattr__ = on_demand(__name__, {"intervals_of": "intervals"})
+__getattr__, __dir__ = on_demand(__name__, {"intervals_of": "intervals"})

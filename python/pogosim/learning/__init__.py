@@ -34,4 +34,4 @@ MODULES = {
     "SwarmArrays": "swarm_arrays",
     "SwarmEnv": "swarm_env",
 }
-__getattr__ = on_demand(__name__, MODULES)
+__getattr__, __dir__ = on_demand(__name__, MODULES)

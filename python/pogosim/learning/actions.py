@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from pogosim.arguments import shown
 from pogosim.firmware import is_firmware
-from pogosim.learning.quantities import Scaled, Scaling, check_finite, resolved
-from pogosim.learning.swarm_arrays import MOST_BYTES, PAYLOAD, USER_DATA, SwarmArrays, Value, field
+from pogosim.learning.quantities import ScaledQuantity, Scaling, check_finite, resolved
+from pogosim.learning.swarm_arrays import USER_DATA, KnownValue, SwarmArrays, field, payload_bytes
 from pogosim.nearest_name import advice
 from pogosim.simulation import ConfigurationError
 
@@ -22,25 +22,25 @@ Write = Callable[[Array], None]  # values in their own units, shape (runs, robot
 PARAMETER = "parameters."
 FULL = 1023  # power of a motor
 # What a host writes: the array of its brain, and which of its numbers.
-OF_HOST: Mapping[str, tuple[str, Any, Value]] = {
-    "motors": ("motors", np.s_[..., :2], Value(2, -FULL, FULL)),
-    "back_motor": ("motors", np.s_[..., 2:], Value(1, -FULL, FULL)),
-    "led": ("leds", np.s_[..., 0, :], Value(3, 0, 255)),
-    "leds": ("leds", np.s_[..., :], Value(15, 0, 255)),
+HOST_OUTPUTS: Mapping[str, tuple[str, Any, KnownValue]] = {
+    "motors": ("motors", np.s_[..., :2], KnownValue(2, -FULL, FULL)),
+    "back_motor": ("motors", np.s_[..., 2:], KnownValue(1, -FULL, FULL)),
+    "led": ("leds", np.s_[..., 0, :], KnownValue(3, 0, 255)),
+    "leds": ("leds", np.s_[..., :], KnownValue(15, 0, 255)),
 }
 
 
-def known_actions(swarm: SwarmArrays) -> dict[str, Value]:
+def known_actions(swarm: SwarmArrays) -> dict[str, KnownValue]:
     """Return what robots can be made to do, by name, except messages and parameters."""
     if swarm.is_hosted:
-        return {name: value for name, (_, _, value) in OF_HOST.items()}
+        return {name: value for name, (_, _, value) in HOST_OUTPUTS.items()}
     program = swarm.runs[0].program
     if program is not None and is_firmware(program):
         return {}  # its memory is read only
     return {name: value for name, value in swarm.known.items() if name.startswith(USER_DATA)}
 
 
-def find_action(swarm: SwarmArrays, name: str) -> Value:
+def find_action(swarm: SwarmArrays, name: str) -> KnownValue:
     """Return what is known of an action.
 
     Raises:
@@ -50,18 +50,16 @@ def find_action(swarm: SwarmArrays, name: str) -> Value:
     if name in known:
         return known[name]
     if name.startswith(PARAMETER) and name != PARAMETER:
-        return Value(1)
-    payload = PAYLOAD.fullmatch(name)
-    if not swarm.is_hosted and (name in OF_HOST or payload):
+        return KnownValue(1)
+    size = payload_bytes(name, "actions")
+    if not swarm.is_hosted and (name in HOST_OUTPUTS or size is not None):
         raise ConfigurationError(
             f"actions: {shown(name)} is written by a host, and a program drives the robots of category "
             f"{shown(swarm.category)}: pass None in place of the program, or name a member of its user data"
             f"{advice(name, known) if known else ''}"
         )
-    if payload:
-        if not 1 <= int(payload[1]) <= MOST_BYTES:
-            raise ConfigurationError(f"actions: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
-        return Value(int(payload[1]), 0, 255)
+    if size is not None:
+        return KnownValue(size, 0, 255)
     others = ["message(4)"] if swarm.is_hosted else []
     raise ConfigurationError(f"actions: there is no action {shown(name)}{advice(name, [*known, *others])}")
 
@@ -88,7 +86,7 @@ def field_type(swarm: SwarmArrays, name: str) -> np.dtype[Any]:
     return kind
 
 
-def check_holds(quantity: Scaled, limits: tuple[float, float]) -> None:
+def check_holds(quantity: ScaledQuantity, limits: tuple[float, float]) -> None:
     """Check that the place of an action can hold all numbers of its range.
 
     Raises:
@@ -101,7 +99,7 @@ def check_holds(quantity: Scaled, limits: tuple[float, float]) -> None:
         )
 
 
-def check_apart(quantities: Sequence[Scaled]) -> None:
+def check_apart(quantities: Sequence[ScaledQuantity]) -> None:
     """Check that no two actions are written to the same place.
 
     Raises:
@@ -109,7 +107,7 @@ def check_apart(quantities: Sequence[Scaled]) -> None:
     """
     taken: dict[str, str] = {}
     for name in (quantity.name for quantity in quantities):
-        place = {"led": "leds"}.get(name, "message" if PAYLOAD.fullmatch(name) else name)
+        place = {"led": "leds"}.get(name, name if payload_bytes(name, "actions") is None else "message")
         if place in taken:
             raise ConfigurationError(f"actions: {taken[place]!r} and {name!r} are written to the same place: keep one")
         taken[place] = name
@@ -191,8 +189,8 @@ class Actions:
             return lambda values: self._set_parameter(name.removeprefix(PARAMETER), values)
         if name.startswith(USER_DATA):
             return lambda values: self._write_user_data(name.removeprefix(USER_DATA), values)
-        if name in OF_HOST:
-            array, part, _ = OF_HOST[name]
+        if name in HOST_OUTPUTS:
+            array, part, _ = HOST_OUTPUTS[name]
             return lambda values: self._write_brain(array, part, values)
         return self._send
 

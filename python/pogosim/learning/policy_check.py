@@ -6,7 +6,6 @@ They are the arrays of that name in the table of docs/policy_export.md.
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,6 +14,8 @@ import numpy.typing as npt
 
 from pogosim.arguments import shown
 from pogosim.learning.quantities import Scaling
+from pogosim.policy.errors import PolicyError
+from pogosim.policy.npz_file import read_arrays
 from pogosim.simulation.errors import ConfigurationError, given
 
 Arrays = dict[str, Any]  # of NumPy, by their names: arguments of network_of()
@@ -30,21 +31,19 @@ def name_in_c(feature: str) -> str:
 
 def policy_arrays(observation: Scaling, actions: Scaling) -> Arrays:
     """Return the arrays that say what the numbers of a policy are."""
-    input_offset, input_scale = observation.offset_and_scale()
-    output_offset, output_scale = actions.offset_and_scale()
     return {
         "input_names": np.array([name_in_c(name) for name in observation.features]),
         "output_names": np.array([name_in_c(name) for name in actions.features]),
-        "input_offset": input_offset,
-        "input_scale": input_scale,
+        "input_offset": observation.middle,
+        "input_scale": np.float32(1) / observation.half,
         "input_low": observation.own_low,
         "input_high": observation.own_high,
-        "output_offset": output_offset,
-        "output_scale": np.float32(1) / output_scale,
+        "output_offset": actions.middle,
+        "output_scale": actions.half,
     }
 
 
-def read_policy(policy: Any) -> tuple[str, Mapping[str, Any]]:
+def arrays_of(policy: Any) -> tuple[str, Mapping[str, Any]]:
     """Return what messages call a policy, and its arrays.
 
     Args:
@@ -57,13 +56,11 @@ def read_policy(policy: Any) -> tuple[str, Mapping[str, Any]]:
         return "policy", policy
     file = given.path("policy", policy)
     try:
-        with np.load(file, allow_pickle=False) as found:
-            if isinstance(found, np.ndarray):
-                raise ValueError("one array alone")
-            return str(file), {name: found[name] for name in found.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, AttributeError, TypeError) as error:
-        said = str(error).partition("\n")[0]
-        raise ConfigurationError(f"{file} cannot be read as an .npz file of NumPy: {said}") from None
+        return str(file), read_arrays(file)
+    except PolicyError as error:
+        raise ConfigurationError(str(error)) from None
+    except OSError as error:
+        raise ConfigurationError(f"{file} cannot be read: {error.strerror}") from None
 
 
 def check_names(what: str, kind: str, found: Sequence[str], expected: Sequence[str]) -> None:
@@ -102,7 +99,7 @@ def check_policy(policy: Any, arrays: Arrays) -> Mapping[str, Any]:
         ConfigurationError: Its inputs or outputs are others, or scaled in another way; or it does not say what they
             are.
     """
-    what, found = read_policy(policy)
+    what, found = arrays_of(policy)
     for kind in NAMES:
         name = f"{kind}_names"
         if name not in found:

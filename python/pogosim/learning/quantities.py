@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.learning.swarm_arrays import Value
+from pogosim.learning.swarm_arrays import KnownValue
 from pogosim.simulation.errors import ConfigurationError, given
 
 Array = npt.NDArray[np.float32]
@@ -68,11 +68,11 @@ def quantities_of(what: str, entries: Any) -> list[Quantity]:
 
 
 @dataclass(frozen=True)
-class Scaled:
+class ScaledQuantity:
     """A quantity of which all is known.
 
     Attributes:
-        name: It.
+        name: Such as "photosensors".
         count: How many numbers it is for each robot.
         low: In its own unit.
         high: In its own unit, above `low`.
@@ -99,7 +99,7 @@ def fits_float32(low: float, high: float) -> bool:
         return bool(np.isfinite(numbers).all() and numbers[0] < numbers[1] and np.isfinite(numbers[4] * numbers[3]))
 
 
-def scaled_quantity(what: str, quantity: Quantity, value: Value) -> Scaled:
+def scaled_quantity(what: str, quantity: Quantity, value: KnownValue) -> ScaledQuantity:
     """Return a quantity with its range, or else that of the value.
 
     Raises:
@@ -117,15 +117,15 @@ def scaled_quantity(what: str, quantity: Quantity, value: Value) -> Scaled:
         raise ConfigurationError(
             f"{name}: the range from {least!r} to {most!r} is too wide or too narrow for numbers of 32 bits"
         )
-    return Scaled(quantity.name, value.count, least, most, quantity.is_scaled)
+    return ScaledQuantity(quantity.name, value.count, least, most, quantity.is_scaled)
 
 
-def resolved(what: str, entries: Any, find: Callable[[str], Value]) -> list[Scaled]:
+def resolved(what: str, entries: Any, find: Callable[[str], KnownValue]) -> list[ScaledQuantity]:
     """Return quantities with their ranges.
 
     Args:
         what: The argument, for messages.
-        entries: It.
+        entries: What was given for it.
         find: Returns what is known of a name, or raises ConfigurationError.
     """
     return [scaled_quantity(what, quantity, find(quantity.name)) for quantity in quantities_of(what, entries)]
@@ -135,43 +135,41 @@ class Scaling:
     """The numbers of some quantities side by side, and what they are in their own units.
 
     Attributes:
-        quantities: They.
+        quantities: The quantities, in order.
         features: Names of the numbers, such as "photosensors[0]".
         low: The least that a policy sees or gives. Shape (features,).
         high: The greatest. Shape (features,).
         own_low: The least in own units. Shape (features,).
         own_high: The greatest in own units. Shape (features,).
+        half: What 1 of a policy is in own units. Shape (features,).
+        middle: What 0 of a policy is in own units. Shape (features,).
     """
 
-    def __init__(self, quantities: Sequence[Scaled]) -> None:
+    def __init__(self, quantities: Sequence[ScaledQuantity]) -> None:
         self.quantities = tuple(quantities)
         self.features = tuple(feature for quantity in quantities for feature in quantity.features)
         counts = [quantity.count for quantity in quantities]
         own_low = np.repeat([quantity.low for quantity in quantities], counts)
         own_high = np.repeat([quantity.high for quantity in quantities], counts)
-        self._is_scaled = np.repeat([quantity.is_scaled for quantity in quantities], counts)
+        is_scaled = np.repeat([quantity.is_scaled for quantity in quantities], counts)
         self.own_low: Array = own_low.astype(np.float32)
         self.own_high: Array = own_high.astype(np.float32)
-        self.low: Array = np.where(self._is_scaled, -1.0, own_low).astype(np.float32)
-        self.high: Array = np.where(self._is_scaled, 1.0, own_high).astype(np.float32)
-        self._half = np.where(self._is_scaled, (own_high - own_low) / 2, 1.0)
-        self._middle = np.where(self._is_scaled, (own_low + own_high) / 2, 0.0)
-        self._gain: Array = (1 / self._half).astype(np.float32)
-        self._offset: Array = (-self._middle / self._half).astype(np.float32)
-        self._gain_back: Array = self._half.astype(np.float32)
-        self._offset_back: Array = self._middle.astype(np.float32)
+        self.low: Array = np.where(is_scaled, -1.0, own_low).astype(np.float32)
+        self.high: Array = np.where(is_scaled, 1.0, own_high).astype(np.float32)
+        half = np.where(is_scaled, own_high / 2 - own_low / 2, 1.0)
+        middle = np.where(is_scaled, own_low / 2 + own_high / 2, 0.0)
+        self.half: Array = half.astype(np.float32)
+        self.middle: Array = middle.astype(np.float32)
+        self._gain: Array = (1 / half).astype(np.float32)
+        self._offset: Array = (-middle / half).astype(np.float32)
 
     def __len__(self) -> int:
         return len(self.features)
 
-    def parts(self) -> list[tuple[Scaled, slice]]:
+    def parts(self) -> list[tuple[ScaledQuantity, slice]]:
         """Return the quantities with where their numbers stand."""
         ends = np.cumsum([quantity.count for quantity in self.quantities]).tolist()
         return [(one, slice(end - one.count, end)) for one, end in zip(self.quantities, ends, strict=True)]
-
-    def offset_and_scale(self) -> tuple[Array, Array]:
-        """Return what makes numbers of a policy of values: (value - offset) * scale. Shapes (features,)."""
-        return self._offset_back, self._gain
 
     def to_policy(self, values: Array) -> None:
         """Scale values of own units in place, and cut them to their ranges. Shape (..., features)."""
@@ -182,8 +180,8 @@ class Scaling:
     def from_policy(self, numbers: npt.NDArray[Any], into: Array) -> None:
         """Cut numbers of a policy to their ranges, and put what they are in own units. Shapes (..., features)."""
         np.clip(numbers, self.low, self.high, out=into)
-        into *= self._gain_back
-        into += self._offset_back
+        into *= self.half
+        into += self.middle
 
 
 def check_finite(

@@ -81,14 +81,14 @@ class Reward:
         shape = (len(self._swarm.runs), self._swarm.robots)
         return lambda swarm: np.broadcast_to(expression.numbers(swarm.__getitem__), shape)
 
-    def of_step(self, has_begun: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
+    def of_step(self, begins_anew: npt.NDArray[np.bool_]) -> npt.NDArray[np.float64]:
         """Return what all robots get now, 0 in runs that have just begun. Shape (runs, robots).
 
         Raises:
             ConfigurationError: Numbers are of another shape, or not finite.
         """
         found = np.array(of_robots("reward", self._of(self._swarm), self._swarm), dtype=np.float64)
-        found[has_begun] = 0.0
+        found[begins_anew] = 0.0
         check_finite("reward", found, where=self._swarm.when)
         return found
 

@@ -14,11 +14,11 @@ import numpy.typing as npt
 from pogosim.arguments import shown
 from pogosim.nearest_name import advice
 from pogosim.simulation import ConfigurationError, Simulation, SimulationError, VectorSimulation
+from pogosim.simulation.brain import MOST_BYTES
 from pogosim.simulation.vector_brain import VectorBrain
 
 Array = npt.NDArray[Any]
 
-MOST_BYTES = 382  # of a message
 FACES = 4
 BRIGHTEST = 32767  # sensor counts
 QUEUE = 20  # messages, `message_queue_size` of robots
@@ -28,41 +28,39 @@ ENTRY = re.compile(r"(.+)\[(\d{1,9})\]", re.ASCII)
 
 
 @dataclass(frozen=True)
-class Value:
+class KnownValue:
     """A value that robots have.
 
     Attributes:
         count: How many numbers it is for each robot.
-        low: The least that is usual; None: not known.
-        high: The greatest.
+        low: The least that is usual, in the unit of the value; None: not known.
+        high: The greatest, likewise.
         entry: The number that an index chooses; None: all of them.
-        is_column: Whether it is one of the data file, and known only in runs that record rows.
     """
 
     count: int
     low: float | None = None
     high: float | None = None
     entry: int | None = None
-    is_column: bool = False
 
 
 # What the world knows of any robot.
 OF_WORLD = {
-    "x": Value(1),
-    "y": Value(1),
-    "angle": Value(1, -math.pi, math.pi),
-    "speed": Value(1),
-    "light": Value(1, 0, BRIGHTEST),
-    "messages_sent": Value(1),
-    "messages_received": Value(1),
+    "x": KnownValue(1),
+    "y": KnownValue(1),
+    "angle": KnownValue(1, -math.pi, math.pi),
+    "speed": KnownValue(1),
+    "light": KnownValue(1, 0, BRIGHTEST),
+    "messages_sent": KnownValue(1),
+    "messages_received": KnownValue(1),
 }
 # What robots that a host drives have measured, and heard since their last decision.
-OF_HOST = {
-    "photosensors": Value(3, 0, BRIGHTEST),
-    "acceleration": Value(3),
-    "angular_velocity": Value(3),
-    "battery_mv": Value(1),
-    "messages": Value(FACES, 0, QUEUE),
+HOST_SENSORS = {
+    "photosensors": KnownValue(3, 0, BRIGHTEST),
+    "acceleration": KnownValue(3),
+    "angular_velocity": KnownValue(3),
+    "battery_mv": KnownValue(1),
+    "messages": KnownValue(FACES, 0, QUEUE),
 }
 
 
@@ -124,49 +122,61 @@ def as_slice(rows: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
     return slice(first, last + 1) if last - first + 1 == len(rows) else rows
 
 
-def known_values(simulation: Simulation, category: str) -> dict[str, Value]:
+def known_values(simulation: Simulation, category: str) -> dict[str, KnownValue]:
     """Return all values that the robots of a category have, by name, except payloads and single entries."""
     known = dict(OF_WORLD)
     if is_hosted(simulation, category):
-        known |= OF_HOST
+        known |= HOST_SENSORS
     elif (kind := user_data_type(simulation)) is not None:
         for name, member in number_fields(kind):
             is_truth = member.base.kind == "b"
-            known[USER_DATA + name] = Value(math.prod(member.shape), *((0, 1) if is_truth else ()))
+            known[USER_DATA + name] = KnownValue(math.prod(member.shape), *((0, 1) if is_truth else ()))
     columns = simulation.columns
     for name in columns:
         if isinstance(columns[name], np.ma.MaskedArray):
-            known[COLUMN + name] = Value(1, is_column=True)
+            known[COLUMN + name] = KnownValue(1)
             known.setdefault(name, known[COLUMN + name])
     return known
 
 
-def all_names(known: Mapping[str, Value]) -> list[str]:
+def all_names(known: Mapping[str, KnownValue]) -> list[str]:
     """Return all names that expressions may use: values of one number, and the entries of others."""
     entries = [f"{name}[{entry}]" for name, value in known.items() if value.count > 1 for entry in range(value.count)]
     return [*(name for name, value in known.items() if value.count == 1), *entries]
 
 
-def has_payloads(known: Mapping[str, Value]) -> bool:
+def has_payloads(known: Mapping[str, KnownValue]) -> bool:
     """Tell whether messages that a host hears are among values; a column may have the name `messages`, too."""
-    return known.get("messages") == OF_HOST["messages"]
+    return known.get("messages") == HOST_SENSORS["messages"]
 
 
-def find_whole(known: Mapping[str, Value], name: str, what: str) -> Value | None:
+def payload_bytes(name: str, what: str) -> int | None:
+    """Return the size of a message by its name, such as "message(4)"; None: it is the name of something else.
+
+    Raises:
+        ConfigurationError: A message cannot have this size.
+    """
+    found = PAYLOAD.fullmatch(name)
+    if found is None:
+        return None
+    if not 1 <= int(found[1]) <= MOST_BYTES:
+        raise ConfigurationError(f"{what}: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
+    return int(found[1])
+
+
+def find_whole(known: Mapping[str, KnownValue], name: str, what: str) -> KnownValue | None:
     """Return a value by its name without an index; None: there is none.
 
     Raises:
         ConfigurationError: It is a message of a wrong size.
     """
-    payload = PAYLOAD.fullmatch(name) if has_payloads(known) else None
-    if name in known or payload is None:
+    if name in known or not has_payloads(known):
         return known.get(name)
-    if not 1 <= int(payload[1]) <= MOST_BYTES:
-        raise ConfigurationError(f"{what}: {shown(name)}: a message has 1 to {MOST_BYTES} bytes")
-    return Value(int(payload[1]), 0, 255)
+    size = payload_bytes(name, what)
+    return None if size is None else KnownValue(size, 0, 255)
 
 
-def find_value(known: Mapping[str, Value], name: str, what: str) -> Value:
+def find_value(known: Mapping[str, KnownValue], name: str, what: str) -> KnownValue:
     """Return a value by its name, which may have an index.
 
     Args:
@@ -183,9 +193,16 @@ def find_value(known: Mapping[str, Value], name: str, what: str) -> Value:
     if entry and (whole := find_whole(known, entry[1], what)) is not None:
         if int(entry[2]) >= whole.count:
             raise ConfigurationError(f"{what}: {shown(name)}: {entry[1]} has {whole.count} entries, from 0")
-        return Value(1, whole.low, whole.high, int(entry[2]))
+        return KnownValue(1, whole.low, whole.high, int(entry[2]))
     sized = ["message(4)"] if has_payloads(known) else []
     raise ConfigurationError(f"{what}: the robots have no value {shown(name)}{advice(name, [*known, *sized])}")
+
+
+def read_only(array: Array) -> Array:
+    """Return a view that cannot be written."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 class SwarmArrays:
@@ -195,7 +212,7 @@ class SwarmArrays:
         end=lambda swarm: (swarm.positions[..., 0] > 900).all(axis=1)
 
     `swarm["light"]` has the shape (runs, robots); a value of several numbers, such as `swarm["photosensors"]`, has
-    (runs, robots, numbers). Arrays are those of now, and some are copies: do not write to them.
+    (runs, robots, numbers). Arrays are those of now, and cannot be written.
 
     Attributes:
         runs: The simulations.
@@ -281,9 +298,12 @@ class SwarmArrays:
     def _read(self, name: str) -> Array:
         if name in OF_WORLD:
             return self._of_world(name)
-        if has_payloads(self.known) and (name == "messages" or (PAYLOAD.fullmatch(name) and name not in self.known)):
-            return self._of_messages(name)
-        if self._brain is not None and name in OF_HOST:
+        if has_payloads(self.known):
+            if name == "messages":
+                return self._message_counts()
+            if name not in self.known and (size := payload_bytes(name, "swarm")) is not None:
+                return self._payloads(size)
+        if self._brain is not None and name in HOST_SENSORS:
             found: Array = getattr(self._brain, name)
             return found
         if name.startswith(USER_DATA):
@@ -304,20 +324,27 @@ class SwarmArrays:
             return self._own(self.runs.light_levels)
         return self._own(getattr(self.runs, name))
 
-    def _of_messages(self, name: str) -> Array:
-        """Return the messages since the last decision: numbers by face, or means of the first bytes of their payloads.
-
-        A byte is the mean over the messages that are long enough to have it, 0 if there is none.
-        """
+    def _received(self) -> tuple[Array, Array]:
+        """Return the messages since the last decision, and the robot of each, counted through all runs."""
         self._needs_messages = True
         received = self._part("received", lambda: self.brain.received)
         place = self._part("place", lambda: received["run"].astype(np.int64) * self.robots + received["robot"])
-        shape = (len(self.runs), self.robots)
-        places = math.prod(shape)
-        if name == "messages":
-            counts = np.bincount(place * FACES + received["face"], minlength=places * FACES)
-            return counts.reshape(*shape, FACES)
-        size = int(name[len("message(") : -1])
+        return received, place
+
+    def _message_counts(self) -> Array:
+        """Return how many messages robots have received since the last decision, by face."""
+        received, place = self._received()
+        shape = (len(self.runs), self.robots, FACES)
+        return np.bincount(place * FACES + received["face"], minlength=math.prod(shape)).reshape(shape)
+
+    def _payloads(self, size: int) -> Array:
+        """Return means of the first bytes of the messages since the last decision.
+
+        A byte is the mean over the messages that are long enough to have it, 0 if there is none.
+        """
+        received, place = self._received()
+        shape = (len(self.runs), self.robots, size)
+        places = len(self.runs) * self.robots
         payloads, begin, length = self.brain.received_bytes, received["offset"].astype(np.int64), received["length"]
         means = np.zeros((places, size))
         least = length.min(initial=MOST_BYTES)  # bytes that all of them have
@@ -328,7 +355,7 @@ class SwarmArrays:
                 place, begin, length = place[has_it], begin[has_it], length[has_it]
                 counts = np.maximum(np.bincount(place, minlength=places), 1)
             means[:, byte] = np.bincount(place, payloads[begin + byte], minlength=places) / counts
-        return means.reshape(*shape, size)
+        return means.reshape(shape)
 
     def _own(self, of_all: Array) -> Array:
         """Return the rows of the category."""
@@ -337,13 +364,13 @@ class SwarmArrays:
     def _kept(self, name: str, read: Callable[[], Array]) -> Array:
         """Return an array of now, read once."""
         if name not in self._cache:
-            self._cache[name] = read()
+            self._cache[name] = read_only(read())
         return self._cache[name]
 
     def _part(self, name: str, read: Callable[[], Array]) -> Array:
         """Return an array of now that values are made of, read once."""
         if name not in self._parts:
-            self._parts[name] = read()
+            self._parts[name] = read_only(read())
         return self._parts[name]
 
     def before_step(self) -> None:

@@ -31,7 +31,7 @@ Info = dict[str, Any]
 
 NEXT_STEP, SAME_STEP, DISABLED = "NextStep", "SameStep", "Disabled"  # values of gymnasium.vector.AutoresetMode
 MOST_RUNS = 100_000
-MOST_SIMULATION_SEED = 2**32
+SIMULATION_SEEDS = 2**32  # there are so many, from 0
 LOGGING = "enable_data_logging"
 
 
@@ -148,12 +148,6 @@ class TaskOfRuns:
         self.reward = Reward(task.reward, self.swarm)
         self.end = End(task.end, self.swarm)
 
-    @property
-    def has_columns(self) -> bool:
-        """Whether it needs columns of the data file."""
-        names = [*(quantity.name for quantity in self.scaling.quantities), *self.reward.names, *self.end.names]
-        return any(find_value(self.swarm.known, name, "columns").is_column for name in names)
-
 
 class SwarmEnv:
     """Runs of a swarm, in which a policy of yours decides what the robots do, many at once.
@@ -197,7 +191,9 @@ class SwarmEnv:
         decision_s: float = 0.1,
         set: Mapping[str, Any] | None = None,  # noqa: A002 -- as of Simulation
         autoreset: Any = NEXT_STEP,
-        **options: Any,
+        threads: int | None = None,
+        strict: bool = False,
+        warned: set[str] | None = None,
     ) -> None:
         """Begin the runs; their episodes begin with `reset`.
 
@@ -220,7 +216,9 @@ class SwarmEnv:
                 if a column is used, at each decision, unless `enable_data_logging` and `save_data_period` are set.
             autoreset: When an episode that is over begins anew, as Gymnasium has it: "NextStep", in the next step;
                 "SameStep", at once, with the last observation in `info`; "Disabled", by `reset`.
-            **options: As of `VectorSimulation`: `threads`, `strict`, `warned`.
+            threads: How many runs go on at a time; None: one for each processor.
+            strict: Unknown keys of the configuration are errors.
+            warned: As of `Simulation`.
 
         Raises:
             ConfigurationError: Something of this is wrong.
@@ -239,15 +237,20 @@ class SwarmEnv:
         count = given.integer("runs", runs, 1, MOST_RUNS)
         self._file = ConfigurationFile(configuration)
         try:
-            if program is not None and LOGGING not in (set or {}):
-                with VectorSimulation(program, self._file.path, [0], set={**settings, LOGGING: True}, **options) as one:
-                    settings[LOGGING] = TaskOfRuns(task, one).has_columns
-            self.runs = VectorSimulation(program, self._file.path, range(count), set=settings, **options)
+            self.runs = VectorSimulation(
+                program,
+                self._file.path,
+                range(count),
+                threads=threads,
+                set=settings,
+                strict=strict,
+                **({} if warned is None else {"warned": warned}),
+            )
         except BaseException:
             self._file.close()
             raise
         try:
-            self._task = TaskOfRuns(task, self.runs)
+            self._task = self._task_of(task, may_have_columns=program is not None and LOGGING not in (set or {}))
             self._steps = time_steps_of(self.decision_s, self.runs[0].time_step)
             self.episode_steps = self._episode_steps(limit_s)
         except BaseException:
@@ -272,6 +275,16 @@ class SwarmEnv:
         if math.isfinite(limit_s):
             settings["simulation_time"] = limit_s + self.decision_s  # the end of a run is none of the episode
         return settings
+
+    def _task_of(self, task: Task, *, may_have_columns: bool) -> TaskOfRuns:
+        """Look up a task in the runs, which record rows from now on if it needs columns of them."""
+        try:
+            return TaskOfRuns(task, self.runs)
+        except ConfigurationError:
+            if not may_have_columns:
+                raise
+        self.runs.reset(set={LOGGING: True})
+        return TaskOfRuns(task, self.runs)
 
     def _episode_steps(self, limit_s: float) -> int:
         if math.isfinite(limit_s):
@@ -317,7 +330,7 @@ class SwarmEnv:
             for run in chosen:
                 self._episodes[run] = Episode(np.random.default_rng(seeds[run]))
         self._begin(chosen)
-        return self._observe(), self._info
+        return self._observe(), self._told()
 
     def _chosen(self, which: npt.ArrayLike) -> list[int]:
         return sorted(set(chosen_rows("which", which, len(self), "run", "the environment has").tolist()))
@@ -334,7 +347,7 @@ class SwarmEnv:
         """Begin an episode in some runs."""
         for run in chosen:
             generator = self._episodes[run].generator or np.random.default_rng()
-            seed = int(generator.integers(MOST_SIMULATION_SEED))
+            seed = int(generator.integers(SIMULATION_SEEDS))
             self._episodes[run] = Episode(generator, seed, self._randomization.drawn(generator))
         self._is_over[chosen] = True  # until it has begun
         begun = [self._episodes[run] for run in chosen]
@@ -368,52 +381,52 @@ class SwarmEnv:
             ProgramFailedError: The program crashed, or did not return.
         """
         wanted = self._task.actions.checked(actions)
-        ended = self._is_over.copy()
-        self._check_begun(ended)
+        begins_anew = self._is_over.copy()
+        self._check_begun(begins_anew)
         try:
-            return self._stepped(wanted, ended)
+            return self._stepped(wanted, begins_anew)
         except BaseException:  # KeyboardInterrupt, too: runs may be at different times
             self._is_halfway[:] = True
             raise
 
     def _stepped(
-        self, wanted: Array, ended: npt.NDArray[np.bool_]
+        self, wanted: Array, begins_anew: npt.NDArray[np.bool_]
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], Info]:
         """Let robots act, and begin episodes anew."""
         self._task.actions.write(wanted)
-        if not ended.all():
+        if not begins_anew.all():
             self.swarm.before_step()
-            self.runs.step(self._steps, None if not ended.any() else ~ended)
-        if ended.any():
-            self._begin(np.flatnonzero(ended).tolist())
+            self.runs.step(self._steps, None if not begins_anew.any() else ~begins_anew)
+        if begins_anew.any():
+            self._begin(np.flatnonzero(begins_anew).tolist())
         self.swarm.after_step()
-        reward = self._task.reward.of_step(ended)
-        terminated, truncated = self._ends(ended)
+        reward = self._task.reward.of_step(begins_anew)
+        terminated, truncated = self._ends(begins_anew)
         observation = self._observe()
         is_over = terminated | truncated
         if self.autoreset != SAME_STEP or not is_over.any():
-            return observation, reward, terminated, truncated, self._info
-        last = {"final_obs": observation.copy(), "final_info": self._info}
+            return observation, reward, terminated, truncated, self._told()
+        last = {"final_obs": observation.copy(), "final_info": self._told()}
         self._begin(np.flatnonzero(is_over).tolist())
-        return self._observe(), reward, terminated, truncated, self._info | last
+        return self._observe(), reward, terminated, truncated, self._told() | last
 
-    def _check_begun(self, ended: npt.NDArray[np.bool_]) -> None:
+    def _check_begun(self, begins_anew: npt.NDArray[np.bool_]) -> None:
         """Check that an episode of each run has begun, and is not over where nothing begins it anew."""
         if not self._has_begun:
             raise SimulationError("reset the environment before its first step")
         if self._is_halfway.any():
             run = int(np.argmax(self._is_halfway))
             raise SimulationError(f"the last step was interrupted or failed in run {run}: reset the environment")
-        if self.autoreset == DISABLED and ended.any():
-            run = int(np.argmax(ended))
+        if self.autoreset == DISABLED and begins_anew.any():
+            run = int(np.argmax(begins_anew))
             raise SimulationError(f"the episode of run {run} is over: reset it (autoreset is {DISABLED!r})")
 
-    def _ends(self, has_begun: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    def _ends(self, begins_anew: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
         """Count the step, and return which episodes have terminated, and which were truncated."""
-        self._episode_step += ~has_begun
+        self._episode_step += ~begins_anew
         truncated = self._episode_step >= self.episode_steps
         has_stopped = self.runs.is_over & ~truncated  # the program has ended its run
-        terminated = (self._task.end.is_reached() | has_stopped) & ~has_begun
+        terminated = (self._task.end.is_reached() | has_stopped) & ~begins_anew
         self._is_over = terminated | truncated
         return terminated, truncated
 
@@ -435,6 +448,10 @@ class SwarmEnv:
         for array in (seeds, *randomized.values()):
             array.flags.writeable = False  # the same arrays are told at each step
         return {"seed": seeds, "randomized": randomized}
+
+    def _told(self) -> Info:
+        """Return what is told of the present episodes, in maps that may be changed."""
+        return self._info | {"randomized": dict(self._info["randomized"])}
 
     # ---- Going back
 

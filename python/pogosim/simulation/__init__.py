@@ -36,4 +36,4 @@ MODULES = {
     "SimulationError": "errors",
     "VectorSimulation": "vector",
 }
-__getattr__ = on_demand(__name__, MODULES)
+__getattr__, __dir__ = on_demand(__name__, MODULES)
