@@ -14,7 +14,7 @@ BRIGHTEST = 30000  # sensor counts, below the lamp
 NEAR_MM = 200.0
 # Numbers of a robot's observation, as main.c has them, each from -1 to 1.
 OBSERVATIONS = ("light", "light ahead", "light to the right", "heard in front", "right", "back", "left")
-ACTIONS = ("left motor", "right motor")
+ACTIONS = ("right motor", "left motor")
 
 
 def commanded_robots(reward: Any, settings: dict[str, Any], **options: Any) -> SwarmEnv:

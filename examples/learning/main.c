@@ -12,7 +12,7 @@
 #include "pogobase.h"
 
 #define OBSERVATION_COUNT 7  // light, light ahead, light to the right, neighbours at each of the four faces
-#define ACTION_COUNT 2       // left motor, right motor
+#define ACTION_COUNT 2       // right motor, left motor, as pogobot_motor_* and hosts have them
 
 typedef struct {
     float observation[OBSERVATION_COUNT];  // each from -1 to 1
@@ -26,8 +26,8 @@ REGISTER_USERDATA(USERDATA);
 // Parameters, the same for all robots. The simulator overrides them from the configuration file.
 bool is_commanded = false;  // a host writes the actions
 // For each motor a bias and the weights of the observation; the action is their sum.
-float policy[ACTION_COUNT * (1 + OBSERVATION_COUNT)] = {0.5f, 0, 0, 1,  0, 0, 0, 0,   // left
-                                                        0.5f, 0, 0, -1, 0, 0, 0, 0};  // right
+float policy[ACTION_COUNT * (1 + OBSERVATION_COUNT)] = {0.5f, 0, 0, -1, 0, 0, 0, 0,   // right
+                                                        0.5f, 0, 0, 1,  0, 0, 0, 0};  // left
 
 #define LIGHT_SCALE 32767.0f   // the brightest that sensors can tell, sensor counts
 #define CONTRAST_GAIN 10.0f    // a tenth more light on one side counts 1
@@ -97,8 +97,8 @@ void user_step(void) {
     if (!is_commanded) {
         decide();
     }
-    drive(motorR, mydata->forward_dir[0], mydata->action[1]);
-    drive(motorL, mydata->forward_dir[1], mydata->action[0]);
+    drive(motorR, mydata->forward_dir[0], mydata->action[0]);
+    drive(motorL, mydata->forward_dir[1], mydata->action[1]);
     // Yellow: light, blue: neighbours.
     float const* const heard = &mydata->observation[3];
     float const neighbours = heard[ir_front] + heard[ir_right] + heard[ir_back] + heard[ir_left];

@@ -85,10 +85,10 @@ TASKS = {
     task.name: task
     for task in (
         # Turn to the brighter side, see examples/learning/main.c.
-        Task("light", "one robot looks for light", light_seeker, (0.5, 0, 0, 1, 0, 0, 0, 0, 0.5, 0, 0, -1, 0, 0, 0, 0)),
+        Task("light", "one robot looks for light", light_seeker, (0.5, 0, 0, -1, 0, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 0, 0)),
         # Turn to the side with more neighbours.
         Task(
-            "gathering", "eight robots gather", gathering, (0.5, 0, 0, 0, 0, 1, 0.5, -1, 0.5, 0, 0, 0, 0, -1, -0.5, 1)
+            "gathering", "eight robots gather", gathering, (0.5, 0, 0, 0, 0, -1, -0.5, 1, 0.5, 0, 0, 0, 0, 1, 0.5, -1)
         ),
     )
 }

@@ -17,7 +17,7 @@ from pogosim.learning import SwarmEnv
 from running import ROOT, example, run
 from train import TASKS, Learnt, figure_of, learn, linear, main
 
-LEFT, RIGHT = np.array([[[0.0, 1.0]]]), np.array([[[1.0, 0.0]]])
+LEFT, RIGHT = np.array([[[1.0, 0.0]]]), np.array([[[0.0, 1.0]]])  # where the robot turns
 
 
 @pytest.fixture
@@ -106,7 +106,7 @@ def test_robots_with_the_weights_do_without_python(tmp_path: Path) -> None:
     still = run(example("learning"), tmp_path / "still", {**settings, "parameters.policy": [0.0] * 16}).frame()
     assert bright["light"].iloc[-6:].mean() > 0.75 > 0.6 > still["light"].iloc[-6:].mean()
     actions = linear(np.array(weights))(np.array([[[0.5, 0.1, 0.25, 0, 0, 0, 0]]]))
-    assert actions.tolist() == [[[0.75, 0.25]]]
+    assert actions.tolist() == [[[0.25, 0.75]]]
 
 
 def test_policy_with_too_few_weights_is_refused(tmp_path: Path) -> None:
