@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pogosim
+import pogosim.learning
 import pytest
 from pogosim.learning import GymnasiumEnv, GymnasiumVectorEnv
 from swarm_envs import hosted_env
@@ -86,6 +87,10 @@ def test_environments_are_not_copied_and_info_is_read_only() -> None:
         for array in (env.swarm.positions, env.swarm["light"], env.swarm["photosensors"], env.swarm["x"]):
             with pytest.raises(ValueError, match="read-only"):
                 array += 1
+
+
+def test_names_of_the_package_are_listed() -> None:
+    assert {"SwarmEnv", "GymnasiumEnv", "PettingZooEnv"} <= set(dir(pogosim.learning))
 
 
 def test_interfaces_take_seeds_of_numpy_and_refuse_options_that_are_no_map() -> None:
