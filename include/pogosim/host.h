@@ -29,6 +29,9 @@ typedef struct pogosim_state pogosim_state;
 /// Threads on which many runs go on.
 typedef struct pogosim_threads pogosim_threads;
 
+/// An expression of values of robots, such as "light / 1000" or "speed < 1 and heard > 10".
+typedef struct pogosim_expression pogosim_expression;
+
 #pragma GCC visibility push(default)  // of functions: what these structs have in C++ stays inside
 
 /// As exit codes of a program. After anything but POGOSIM_OK and POGOSIM_OVER of a step, the run is over and its files
@@ -315,6 +318,21 @@ char const* pogosim_threads_error(pogosim_threads const* threads, size_t run);
 
 /// Ends the threads. The runs stay open. NULL does nothing.
 void pogosim_threads_close(pogosim_threads* threads);
+
+/// Reads an expression, as breakpoints of the window have it; `known`: the names of values that may be in it, a line
+/// for each. It fails where the text is wrong, and says at which character.
+int pogosim_expression_open(char const* text, char const* known, pogosim_expression** expression);
+
+/// The names in it, each once, a line for each; empty: there is none.
+char const* pogosim_expression_names(pogosim_expression const* expression);
+
+/// What it is for each of `count` robots; truth values are 1 and 0. `values`: of each of its names, in their order,
+/// `count` numbers, NaN where there is none.
+void pogosim_expression_numbers(pogosim_expression const* expression, float const* const* values, size_t count,
+                                float* numbers);
+
+/// NULL does nothing.
+void pogosim_expression_close(pogosim_expression* expression);
 
 /// Copies an array of many runs, one after the other: that of pogosim_run_array(), or, if `category` is not NULL, of
 /// pogosim_run_brain_array(). Arrays of bodies ("bodies.position") have a row for each robot in place of one for each

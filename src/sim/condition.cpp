@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -31,7 +32,7 @@ struct ConditionNode {
     std::unique_ptr<ConditionNode const> a{};
     std::unique_ptr<ConditionNode const> b{};
 
-    float evaluate(std::vector<std::vector<float>> const& values, std::size_t robot) const {
+    float evaluate(std::span<float const* const> values, std::size_t robot) const {
         if (operation != nullptr) {
             return operation(a->evaluate(values, robot), b != nullptr ? b->evaluate(values, robot) : 0.0F);
         }
@@ -88,7 +89,7 @@ public:
 
     Tree condition() {
         if (text_.size() > kMostCharacters) {
-            fail(fmt::format("a condition has at most {} characters, found {}", kMostCharacters, text_.size()));
+            fail(fmt::format("an expression has at most {} characters, found {}", kMostCharacters, text_.size()));
         }
         Tree tree = disjunction();
         if (!at_end()) {
@@ -272,15 +273,23 @@ Condition& Condition::operator=(Condition&&) noexcept = default;
 
 std::optional<std::size_t> Condition::first_robot(RobotValues const& values) {
     values_.resize(names_.size());
+    places_.resize(names_.size());
     for (std::size_t i = 0; i < names_.size(); ++i) {
         values.read(names_[i], values_[i]);
+        places_[i] = values_[i].data();
     }
     for (std::size_t robot = 0; robot < values.robot_count(); ++robot) {
-        if (is_true(root_->evaluate(values_, robot))) {
+        if (is_true(root_->evaluate(places_, robot))) {
             return robot;
         }
     }
     return std::nullopt;
+}
+
+void Condition::evaluate(std::span<float const* const> values, std::span<float> numbers) const {
+    for (std::size_t robot = 0; robot < numbers.size(); ++robot) {
+        numbers[robot] = root_->evaluate(values, robot);
+    }
 }
 
 }  // namespace pogosim

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "base/error.hpp"
 #include "support/small_world.hpp"
 
@@ -105,13 +109,26 @@ TEST_F(ConditionTest, NamesAreThoseInIt) {
     EXPECT_EQ(Condition("my column > 1", {"my column"}).names(), std::vector<std::string>{"my column"});
 }
 
+TEST_F(ConditionTest, IsANumberForEachRobot) {
+    std::vector<float> const x{1.0F, -2.0F, NAN};
+    std::vector<float> const y{4.0F, 5.0F, 6.0F};
+    std::vector<float const*> const values{y.data(), x.data()};  // as its names
+    std::vector<float> numbers(3);
+    Condition("y / abs(x) + (x < 0)", {"x", "y"}).evaluate(values, numbers);
+    EXPECT_EQ(numbers[0], 4.0F);
+    EXPECT_EQ(numbers[1], 3.5F);
+    EXPECT_TRUE(std::isnan(numbers[2]));
+    Condition("1 / 0", {}).evaluate({}, numbers);
+    EXPECT_TRUE(std::isinf(numbers[2]));
+}
+
 TEST_F(ConditionTest, HasAtMostAThousandCharacters) {
     std::string text = "x";
     while (text.size() < 996) {
         text += "+1";
     }
     EXPECT_EQ(error(text + ">1"), "");
-    EXPECT_NE(error(text + "+1+1>1").find("a condition has at most 1000 characters, found 1003"), std::string::npos);
+    EXPECT_NE(error(text + "+1+1>1").find("an expression has at most 1000 characters, found 1003"), std::string::npos);
 }
 
 TEST_F(ConditionTest, OfALongOneThePartAroundAMistakeIsShown) {
