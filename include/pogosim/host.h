@@ -49,8 +49,9 @@ struct pogosim_run_options {
     char const* configuration;    ///< YAML file
     char const* const* settings;  ///< "key.path=value", as of --set
     size_t setting_count;
-    int64_t seed;  ///< 0 to 2^32 - 1; negative: that of the configuration
-    int strict;    ///< not 0: unknown keys are errors
+    int64_t seed;         ///< 0 to 2^32 - 1; negative: that of the configuration
+    int strict;           ///< not 0: unknown keys are errors
+    int strict_settings;  ///< not 0: those of the settings are
 };
 
 /// An array of the simulator, where it is: it changes with each step, and lives as long as the run. Only those arrays

@@ -190,8 +190,9 @@ void MapReader::report_unknown(std::string const& key, Node const& value) const 
     if (hint.empty()) {
         hint = did_you_mean(shown(key), names);
     }
-    if (reading_.strict_keys) {
-        reading_.problems.add(fmt::format("{}: unknown key '{}'{} (--strict)", value.where(), path, hint));
+    if (reading_.strict_keys || (reading_.strict_overrides && value.source == kSetSource)) {
+        reading_.problems.add(fmt::format("{}: unknown key '{}'{}{}", value.where(), path, hint,
+                                          reading_.strict_keys ? " (--strict)" : ""));
         return;
     }
     log().warn("{}: unknown key '{}' is ignored{}", value.where(), path, hint);

@@ -26,6 +26,7 @@ struct Reading {
     std::string firmware{};                  // that drives robots in the place of the program; empty: none does
     std::vector<ObjectFile> object_files{};  // that have been read
     ObjectTypes const* types = nullptr;      // that objects may have; null where no entries of `objects` are read
+    bool strict_overrides = false;           // an unknown key that --set gives is a mistake, even if others are not
 };
 
 }  // namespace pogosim

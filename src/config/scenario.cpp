@@ -168,6 +168,7 @@ Scenario read_scenario(std::string const& path, LoadOptions const& options, Obje
     Node const written = read_yaml_file(path);
     Reading reading{
         .strict_keys = options.strict, .strict_values = options.strict_values, .thorough = options.thorough};
+    reading.strict_overrides = options.strict_overrides;
     reading.configuration = path;
     reading.firmware = options.firmware;
     reading.types = &types;

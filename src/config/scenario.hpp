@@ -159,6 +159,7 @@ struct LoadOptions {
     bool strict_values = false;            // values that would be cut, or replaced by the default, are errors
     bool thorough = false;                 // for a check, see Reading
     std::string firmware{};                // that drives robots in the place of the program; empty: none does
+    bool strict_overrides = false;         // unknown keys of overrides are errors, even if others are not
 
     bool operator==(LoadOptions const&) const = default;
 };

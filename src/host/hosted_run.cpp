@@ -35,10 +35,12 @@ void check_program_file(Scenario const& scenario, char const* program) {
 
 Scenario scenario_of(pogosim_run_options const& options, bool is_firmware) {
     std::vector<std::string> const settings(options.settings, options.settings + options.setting_count);
-    Scenario scenario = load_known_scenario(
-        options.configuration,
-        {.overrides = settings, .strict = options.strict != 0, .firmware = is_firmware ? options.program : ""},
-        object_types());
+    Scenario scenario = load_known_scenario(options.configuration,
+                                            {.overrides = settings,
+                                             .strict = options.strict != 0,
+                                             .firmware = is_firmware ? options.program : "",
+                                             .strict_overrides = options.strict_settings != 0},
+                                            object_types());
     if (options.seed >= 0) {
         scenario.seed = static_cast<std::uint32_t>(options.seed);
     }

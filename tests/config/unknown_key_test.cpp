@@ -66,6 +66,14 @@ TEST(UnknownKey, IsAnErrorWhenStrict) {
               "--set: unknown key 'objects.robots.radus'; did you mean 'radius'? (--strict)");
 }
 
+TEST(UnknownKey, OfOverridesMayBeAnErrorAlone) {
+    LoadOptions const options{.overrides = {"objects.robots.radus=3"}, .strict_overrides = true};
+    EXPECT_EQ(load_error(kRobots, options), "--set: unknown key 'objects.robots.radus'; did you mean 'radius'?");
+    Warnings const warnings;
+    load(kRobots + "    radus: 3\n", {.overrides = {"objects.robots.nb=2"}, .strict_overrides = true});
+    EXPECT_EQ(warnings.text(), "x.yaml:6: unknown key 'objects.robots.radus' is ignored; did you mean 'radius'?\n");
+}
+
 TEST(UnknownKey, PlaceOneLevelFurtherInIsNamed) {
     std::string const text = kRobots + "parameters: {turn_duration: 300, walk: {speed: 1}}\n";
     auto const warnings_of_set = [&text](std::string const& assignment) {

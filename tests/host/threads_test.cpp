@@ -61,7 +61,8 @@ int open_run(Talk const& talk, pogosim_run** run) {
                                       .settings = texts.data(),
                                       .setting_count = texts.size(),
                                       .seed = talk.seed,
-                                      .strict = 0};
+                                      .strict = 0,
+                                      .strict_settings = 0};
     return pogosim_run_open(&options, run);
 }
 
@@ -290,7 +291,8 @@ TEST(HostedRuns, ReadsAreAnsweredBetweenTwoStepsOfAnotherThread) {
                                       .settings = nullptr,
                                       .setting_count = 0,
                                       .seed = 1,
-                                      .strict = 0};
+                                      .strict = 0,
+                                      .strict_settings = 0};
     pogosim_run* run = nullptr;
     ASSERT_EQ(pogosim_run_open(&options, &run), POGOSIM_OK) << pogosim_host_error();
     auto const number = [&](char const* name) {

@@ -84,6 +84,7 @@ WRONG_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"decision_s": 0}, "decision_s: expected a multiple of time_step, 0.01 s, found 0 s"),
     ({"decision_s": "1"}, "decision_s: expected a finite number, found '1'"),
     ({"end": "x < 0", "decision_s": 20.0}, "simulation_time: expected at least decision_s, 20 s"),
+    ({"set": {"objects.robots.raduis": 20}}, "set: unknown key 'objects.robots.raduis'; did you mean 'radius'?"),
     ({"category": "robot"}, "unknown category 'robot' (known: robots, lamp); did you mean 'robots'?"),
     ({"autoreset": "next"}, "autoreset: expected 'NextStep', 'SameStep' or 'Disabled', found 'next'"),
     ({"set": {"objects.robots.nb": 0}}, "category 'robots' has no robots"),
@@ -231,6 +232,23 @@ def test_seeds_and_runs_that_are_not_there_are_refused() -> None:
             assert message in refusal(error)
         with pytest.raises(pogosim.ConfigurationError, match=r"state: expected what save\(\) has returned, found 3"):
             env.restore(3)  # type: ignore[arg-type]
+
+
+def test_key_that_is_drawn_and_unknown_is_refused_with_the_nearest_one() -> None:
+    with hosted_env(randomize={"objects.robots.linear_noise_stdev": [0, 0.3]}) as env:
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            env.reset(seed=1)
+        assert refusal(error) == (
+            "run 0: set: unknown key 'objects.robots.linear_noise_stdev'; did you mean 'linear_noise_stddev'?"
+        )
+
+
+def test_keys_of_the_configuration_may_be_for_other_programs() -> None:
+    unknown = {"objects.robots.raduis": 20}
+    with hosted_env(unknown) as env:
+        env.reset(seed=1)
+    with pytest.raises(pogosim.ConfigurationError, match=r"unknown key 'objects\.robots\.raduis'"):
+        hosted_env(unknown, strict=True)
 
 
 def test_value_that_is_drawn_and_wrong_is_told_with_its_key_and_the_next_episode_may_be_right() -> None:

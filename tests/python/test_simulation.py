@@ -416,6 +416,8 @@ def test_what_cannot_be_run_is_one_clear_message(hosted: Path, scene: Path, tmp_
         pogosim.Simulation(hosted, scene, seed=2**32)
     with pytest.raises(pogosim.ConfigurationError, match="unknown key"):
         pogosim.Simulation(hosted, scene, set={"simulation_tme": 1}, strict=True)
+    with pytest.raises(pogosim.ConfigurationError, match=r"^set: unknown key 'simulation_tme'; did you mean '\w+'\?$"):
+        pogosim.Simulation(hosted, scene, set={"simulation_tme": 1}, strict_set=True)
 
 
 def test_executable_stands_for_the_shared_object_beside_it() -> None:

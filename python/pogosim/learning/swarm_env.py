@@ -217,7 +217,7 @@ class SwarmEnv:
             autoreset: When an episode that is over begins anew, as Gymnasium has it: "NextStep", in the next step;
                 "SameStep", at once, with the last observation in `info`; "Disabled", by `reset`.
             threads: How many runs go on at a time; None: one for each processor.
-            strict: Unknown keys of the configuration are errors.
+            strict: Unknown keys of the configuration are errors, as those of `set` and `randomize` always are.
             warned: As of `Simulation`.
 
         Raises:
@@ -244,6 +244,7 @@ class SwarmEnv:
                 threads=threads,
                 set=settings,
                 strict=strict,
+                strict_set=True,
                 **({} if warned is None else {"warned": warned}),
             )
         except BaseException:

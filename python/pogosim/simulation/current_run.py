@@ -14,7 +14,7 @@ from pogosim.lines import printable
 from pogosim.outputs import OutputError, leads_to, partial_output, real_output, told
 from pogosim.simulation.arrays import RunState
 from pogosim.simulation.errors import ConfigurationError, given
-from pogosim.simulation.library import OpenRun, interrupt_soon, library, open_run
+from pogosim.simulation.library import OpenRun, Strict, interrupt_soon, library, open_run
 from pogosim.table_formats import BESIDE, CSV, EXPECTED, format_of, is_our_metadata, metadata_path
 
 WARNING = threading.Lock()
@@ -86,7 +86,7 @@ class CurrentRun:
         return folder
 
     def open(
-        self, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: bool
+        self, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: Strict
     ) -> RunState:
         """Build a run and start its program."""
         self.opened = OpenRun()

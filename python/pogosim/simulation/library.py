@@ -31,7 +31,7 @@ from ctypes import (
     c_void_p,
 )
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pogosim import __version__
 from pogosim.extensions import let_find_models
@@ -68,6 +68,7 @@ class RunOptions(ctypes.Structure):
         ("setting_count", c_size_t),
         ("seed", c_int64),
         ("strict", c_int),
+        ("strict_settings", c_int),
     )
 
 
@@ -266,6 +267,18 @@ def error_of_step(status: int, message: bytes) -> SimulationError:
     return SimulationError(message.decode()) if message == FAILED_BEFORE else error_of(status, message)
 
 
+class Strict(NamedTuple):
+    """Which unknown keys are errors.
+
+    Attributes:
+        keys: All.
+        settings: Those of the settings.
+    """
+
+    keys: bool = False
+    settings: bool = False
+
+
 class OpenRun:
     """A run of the simulator, which is freed with this object: arrays of it keep it, and so do calls under way.
 
@@ -292,7 +305,7 @@ class OpenRun:
 
 
 def open_run(
-    run: OpenRun, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: bool
+    run: OpenRun, program: Path | None, configuration: Path, settings: list[str], seed: int | None, strict: Strict
 ) -> None:
     """Build a run and start its program. The caller keeps `run`: Ctrl-C may come as soon as it is open."""
     texts = (c_char_p * len(settings))(*(text.encode() for text in settings))
@@ -302,6 +315,7 @@ def open_run(
         texts,
         len(settings),
         -1 if seed is None else seed,
-        strict,
+        strict.keys,
+        strict.settings,
     )
     check(library().pogosim_run_open(byref(options), byref(run.pointer)))

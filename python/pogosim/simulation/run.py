@@ -26,7 +26,7 @@ from pogosim.simulation.brain import Brain
 from pogosim.simulation.current_run import CurrentRun, write_copy
 from pogosim.simulation.errors import ConfigurationError, NoVariableError, SimulationError, given
 from pogosim.simulation.forked import check_process, is_forked
-from pogosim.simulation.library import OK, OVER, Turn, check, error_of_step, in_words_of_python, library
+from pogosim.simulation.library import OK, OVER, Strict, Turn, check, error_of_step, in_words_of_python, library
 from pogosim.simulation.links import cut_links, links_of, make_link
 from pogosim.simulation.objects import Lamps, Objects, WorldObject, object_state
 from pogosim.simulation.saved_state import SavedState
@@ -171,6 +171,7 @@ class Simulation:
         set: Mapping[str, Any] | None = None,  # noqa: A002 -- the name of the option
         data_file: PathLike | None = None,
         strict: bool = False,
+        strict_set: bool = False,
         warned: set[str] | None = None,
     ) -> None:
         """Build the world and run the program up to time 0.
@@ -185,6 +186,7 @@ class Simulation:
             set: Values for keys of the configuration, such as {"objects.robots.nb": 50}.
             data_file: Where the rows go; None: to a temporary file, for `to_dataframe`.
             strict: Unknown keys are errors.
+            strict_set: Unknown keys of `set` are errors, here and in `reset`, even if those of the file are not.
             warned: Warnings that are not passed on again, and to which those that are passed on are added: simulations
                 that share a set pass each warning on once. None: a set of its own.
 
@@ -195,7 +197,7 @@ class Simulation:
         """
         self.program = None if program is None else shared_object(given.path("program", program))
         self.configuration = given.path("configuration", configuration)
-        self._strict = given.boolean("strict", strict)
+        self._strict = Strict(given.boolean("strict", strict), given.boolean("strict_set", strict_set))
         settings = checked_settings(set)
         seed = checked_seed(seed)
         if data_file is None and "data_filename" in settings:
