@@ -58,6 +58,10 @@ file(GLOB pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md")
 install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim/docs")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/decisions" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim/docs"
     FILES_MATCHING PATTERN "*.md")
+install(FILES "${PROJECT_SOURCE_DIR}/CHANGELOG.md" DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim")
+# What docs/clusters.md lets sites copy.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/containers" "${PROJECT_SOURCE_DIR}/modules"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/pogosim")
 install(TARGETS pogosim_without_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 if(TARGET pogosim_shared_state)
     install(TARGETS pogosim_shared_state RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")

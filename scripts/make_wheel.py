@@ -176,11 +176,20 @@ def made_for(name: str, folder: Path, with_environment: bool) -> Path:
     return wheel
 
 
+def check_names_no_folder(wheel: Path) -> None:
+    """End the program if a wheel names a folder of this machine, as assertions and debug information would."""
+    with zipfile.ZipFile(wheel) as content:
+        named = [name for name in content.namelist() if os.fsencode(ROOT) in content.read(name)]
+    if named:
+        raise SystemExit(f"make_wheel.py: {wheel.name} names folders of {ROOT}, in {', '.join(named)}")
+
+
 def make_wheel(output: Path, target: str | None, with_environment: bool) -> Path:
     """Make a wheel for a target, or for this machine, and return it."""
     with tempfile.TemporaryDirectory(prefix="pogosim-wheel-") as name:
         folder = Path(name)
         wheel = made_for(target, folder, with_environment) if target else made_here(folder, with_environment)
+        check_names_no_folder(wheel)
         output.mkdir(parents=True, exist_ok=True)
         platform = wheel.stem.rpartition("-")[2]
         place = output / wheel.name

@@ -23,7 +23,7 @@ set(CMAKE_BUILD_WITH_INSTALL_NAME_DIR ON)
 set(CMAKE_INSTALL_NAME_DIR "@rpath")
 # Names of C++ stay inside: zig's linker cannot be told so. Of zig's <float.h> and <math.h>, the second to be included would
 # lack its macros, FLT_MAX and others or INFINITY.
-set(CMAKE_C_FLAGS_INIT "-fvisibility=hidden")
+set(CMAKE_C_FLAGS_INIT "-fvisibility=hidden -g0")  # a library that programs are linked with would name folders of this machine
 set(CMAKE_CXX_FLAGS_INIT "-fvisibility=hidden -fvisibility-inlines-hidden -include cfloat -include __float_infinity_nan.h")
 set(CMAKE_USER_MAKE_RULES_OVERRIDE "${CMAKE_CURRENT_LIST_DIR}/macos_rules.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/prefix.cmake")

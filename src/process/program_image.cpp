@@ -111,11 +111,22 @@ std::vector<char> content_of(std::filesystem::path const& file) {
 
 #ifdef __linux__
 
+#if defined(__x86_64__)
+constexpr Elf64_Half kProcessor = EM_X86_64;
+#elif defined(__aarch64__)
+constexpr Elf64_Half kProcessor = EM_AARCH64;
+#else
+constexpr Elf64_Half kProcessor = EM_NONE;  // not checked
+#endif
+
 /// The reason why a file cannot be loaded; empty: there is none.
 std::string problem_of(std::vector<char> const& bytes) {
     ElfFile const elf = elf_file(bytes);
     if (elf.header == nullptr) {
         return "is no shared object: make one with 'make sim', or with 'cc -shared -fPIC'";
+    }
+    if (kProcessor != EM_NONE && elf.header->e_machine != kProcessor) {
+        return "is for another processor: make it on this machine, with 'make sim'";
     }
     bool const has_interpreter =
         std::ranges::any_of(elf.segments, [](Elf64_Phdr const& segment) { return segment.p_type == PT_INTERP; });

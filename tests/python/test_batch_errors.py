@@ -72,12 +72,15 @@ def test_program_that_is_no_simulator_is_refused_before_anything_is_touched(tmp_
     text.write_text("hello\n")
     locked = script(tmp_path / "locked", "")
     locked.chmod(0o644)
+    of_a_mac = tmp_path / "of_a_mac"
+    of_a_mac.write_bytes(b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01" + bytes(64) + b"pogosim")
     for program, what in (
         (Path("/bin/ls"), "/bin/ls is not a simulator; expected a program compiled for Pogosim"),
         (text, "is not a simulator"),
         (tmp_path, "is a folder"),
         (tmp_path / "nothing", "does not exist"),
         (locked, "is not executable; chmod +x"),
+        (of_a_mac, "is for macOS on ARM64, and this is "),
     ):
         assert what in one_line(tmp_path, program=program)
         assert list(results(tmp_path)) == ["result.feather"]

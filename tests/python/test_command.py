@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pogosim
 import pytest
+from pogosim.machine_code import this_machine
 from project import CLEAN, TEMPLATE
 from running import PROGRAMS, Run, build_folder, ran, write_scene
 
@@ -231,12 +232,20 @@ def test_what_cannot_be_run_is_one_line(arguments: list[str], said: str, tmp_pat
 
 
 def test_run_refuses_programs_of_other_machines(tmp_path: Path) -> None:
-    mach_o, elf = b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01", b"\x7fELF\x02\x01\x01" + bytes(9) + b"\x02\x00\xef\xbe"
-    for name, beginning in (("of_a_mac", mach_o), ("of_an_unknown_processor", elf), ("text", b"text\n")):
-        (tmp_path / name).write_bytes(beginning + bytes(64))
+    for name, machine in (("of_a_mac", "macOS on ARM64"), ("of_a_mac.so", "macOS on ARM64")):
+        (tmp_path / name).write_bytes(b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01" + bytes(64))
         (tmp_path / name).chmod(0o755)
-        why = "it is no program, or one for another kind of machine; build it on this one"
-        assert refusal(command(tmp_path, "run", f"./{name}")) == f"pogosim run: cannot run {name}: {why}"
+        why = f"is for {machine}, and this is {this_machine()}: compile it here (make sim)"
+        assert refusal(command(tmp_path, "run", f"./{name}")) == f"pogosim run: {name} {why}"
+
+
+def test_run_refuses_programs_that_cannot_be_executed(tmp_path: Path) -> None:
+    (tmp_path / "text").write_text("text\n")
+    (tmp_path / "text").chmod(0o755)
+    assert refusal(command(tmp_path, "run", "./text")) == "pogosim run: cannot run text: Exec format error"
+    shutil.copy(sys.executable, tmp_path / "copied")
+    (tmp_path / "copied").chmod(0o644)
+    assert refusal(command(tmp_path, "run", "copied")) == "pogosim run: copied is not executable: chmod +x copied"
 
 
 def test_run_without_a_program_says_how_to_name_one(tmp_path: Path) -> None:

@@ -399,10 +399,14 @@ def test_what_cannot_be_run_is_one_clear_message(hosted: Path, scene: Path, tmp_
     source = tmp_path / "other.c"
     source.write_text("int one = 1;\n")
     subprocess.run(["cc", "-shared", "-fPIC", "-o", other, source], check=True)
+    elsewhere = tmp_path / "elsewhere.so"
+    code = other.read_bytes()
+    elsewhere.write_bytes(code[:18] + b"\xf3\x00" + code[20:])  # RISC-V
     cases = [
         (tmp_path / "absent.so", scene, "the program '.*absent.so' cannot be read: No such file"),
         (tmp_path, scene, "is a folder"),
         (text, scene, "is no shared object"),
+        (elsewhere, scene, "is for another processor: make it on this machine"),
         (other, scene, "is no program for Pogosim"),
         (Path("/bin/true"), scene, "is an executable: name the shared object"),
         (hosted, tmp_path / "absent.yaml", "absent.yaml"),

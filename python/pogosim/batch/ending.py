@@ -151,6 +151,5 @@ def advice_after_interruption(kept: str | None, counted: Callable[[], str]) -> s
         return ""
     with contextlib.suppress(OSError):
         if there := counted():
-            verb = "is" if there == "1 finished run" else "are"
-            return f": {there} {verb} in {kept}; the same command continues"
+            return f": {kept} has {there}; the same command continues"
     return f"; finished runs are kept in {kept}: the same command continues"

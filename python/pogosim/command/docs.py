@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pydoc
+import re
+import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +17,7 @@ from pogosim.lines import say, say_text
 from pogosim.nearest_name import listed, unknown
 
 ENDING = ".md"
+CHANGES = "changelog"  # which pages name as ../CHANGELOG.md
 
 
 class PageError(ToolError):
@@ -34,7 +38,8 @@ def pages_in(folder: Path) -> dict[str, Path]:
     files = sorted(folder.rglob(f"*{ENDING}"))
     if not files:
         raise PageError(f"there are no pages in {folder}: this Pogosim is not complete, install it again")
-    return {file.relative_to(folder).as_posix().removesuffix(ENDING): file for file in files}
+    pages = {file.relative_to(folder).as_posix().removesuffix(ENDING): file for file in files}
+    return pages | {CHANGES: folder.parent / "CHANGELOG.md"}
 
 
 def title_of(file: Path) -> str:
@@ -50,9 +55,43 @@ def page_named(typed: str, pages: dict[str, Path]) -> Path:
         PageError: There is no such page.
     """
     name = typed.partition("#")[0].removeprefix("./").removeprefix("docs/").removesuffix(ENDING)
-    if name not in pages:
+    found = pages.get(name) or pages.get(name.lower())
+    if found is None:
         raise PageError(unknown("page", name, pages, "pogosim docs lists all pages"))
-    return pages[name]
+    return found
+
+
+def section_of(text: str, anchor: str) -> str:
+    """Return a section of a page with those in it, by the end of a link to it, such as "an-x-server-in-windows".
+
+    Raises:
+        PageError: There is no such section.
+    """
+    begins: dict[str, tuple[int, int]] = {}  # of each section, its line and its level
+    lines, is_code = text.splitlines(), False
+    for number, line in enumerate(lines):
+        is_code ^= line.lstrip().startswith("```")
+        if not is_code and (found := re.match(r"(#+) (.+)", line)):
+            begins.setdefault(anchor_of(found[2]), (number, len(found[1])))
+    if anchor not in begins:
+        raise PageError(unknown("section", anchor, begins, f"there are {', '.join(begins)}"))
+    begin, level = begins[anchor]
+    ends = (number for number, other in begins.values() if number > begin and other <= level)
+    return "\n".join(lines[begin : min(ends, default=len(lines))])
+
+
+def anchor_of(heading: str) -> str:
+    """Return how links name a heading, as forges make it: small letters, no punctuation, hyphens for blanks."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def show(text: str) -> None:
+    """Print a text; on a terminal, through the pager of the environment if it is there."""
+    pager = (os.environ.get("MANPAGER") or os.environ.get("PAGER") or "").split()
+    if sys.stdout is not None and sys.stdout.isatty() and (not pager or shutil.which(pager[0])):
+        pydoc.pager(text)
+    else:
+        say_text(text.rstrip("\n"))
 
 
 def main(arguments: Sequence[str] | None = None, prog: str = "pogosim docs") -> int:
@@ -62,7 +101,12 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim docs") -> 
         description="Shows a page of the documentation, such as those that messages name: pogosim docs porting. On a "
         "terminal, a pager shows it. Without a name, it lists all pages.",
     )
-    parser.add_argument("page", metavar="PAGE", nargs="?", help="name of the page: porting, or docs/porting.md")
+    parser.add_argument(
+        "page",
+        metavar="PAGE",
+        nargs="?",
+        help="name of the page: porting, docs/porting.md or, from a section, porting#waiting",
+    )
     parser.add_argument("--path", action="store_true", help="print where the file is; without a name, the folder")
     options = parser.parse_args(arguments)
     try:
@@ -73,10 +117,9 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim docs") -> 
             say(str(file or folder))
         elif file is None:
             say(*listed({name: title_of(page) for name, page in pages.items()}))
-        elif sys.stdout.isatty():
-            pydoc.pager(file.read_text(encoding="utf-8"))
         else:
-            say_text(file.read_text(encoding="utf-8").rstrip("\n"))
+            text, anchor = file.read_text(encoding="utf-8"), options.page.partition("#")[2]
+            show(section_of(text, anchor) if anchor else text)
     except ToolError as error:
         return complain(prog, error)
     return 0

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import importlib.util
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -13,7 +15,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from pogobot_simulator import MEND, OTHER, metadata_of
+from pogobot_simulator import DISTRIBUTION, MEND, OTHER, metadata_of
 
 import pogosim
 from pogosim.command.display_check import check_window
@@ -119,12 +121,19 @@ def check_programs(found: Installation, purpose: str, suffix: str, advice: str) 
         )
     if done.returncode != 0:
         reinstall = (
-            "install pyarrow in the version that pip show pogobot-simulator requires"
-            if "libarrow" in done.stderr
-            else ""
+            f"{shlex.quote(sys.executable)} -m pip install '{required_arrow()}'" if "libarrow" in done.stderr else ""
         )
         return Finding(purpose, False, f"a test program does not run: {last_line(done)}", reinstall)
     return Finding(purpose, True, f"compiled and ran a test program with {first_line(*command, '--version')}")
+
+
+def required_arrow() -> str:
+    """Return the requirement of Arrow of this installation, as pip takes it: a wheel needs one minor version."""
+    try:
+        words = importlib.metadata.requires(DISTRIBUTION) or []
+    except importlib.metadata.PackageNotFoundError:
+        words = []
+    return max((word for word in words if word.startswith("pyarrow")), key=lambda word: "==" in word, default="pyarrow")
 
 
 def check_make(found: Installation) -> Finding:  # noqa: ARG001

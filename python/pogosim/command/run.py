@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import errno
 import functools
 import os
 import shlex
@@ -18,6 +17,7 @@ from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
+from pogosim.machine_code import LONGEST, machine_of, of_another_machine
 from pogosim.projects import run_make
 from pogosim.system_packages import how_to_install
 
@@ -142,10 +142,15 @@ def program_of(what: Path, pogosim: Installation) -> Path:
         raise RunError(f"there is no project, source file or program {what}")
     if what.suffix in COMPILERS:
         return compile_file(what, pogosim)
+    if elsewhere := of_another_machine(what):
+        raise RunError(elsewhere)
     if what.suffix == ".so":
         beside = f"; run {what.with_suffix('')}" if what.with_suffix("").is_file() else ", and no program (make sim)"
         raise RunError(f"{what} is a shared object, for Python and `pogosim watch`{beside}")
     if not os.access(what, os.X_OK):
+        with what.open("rb") as file:
+            if machine_of(file.read(LONGEST)):
+                raise RunError(f"{what} is not executable: chmod +x {what}")
         raise RunError(f"{what} is neither a folder, a .c or .cpp file, a firmware, nor a program")
     return what
 
@@ -212,8 +217,4 @@ def main(arguments: Sequence[str] | None = None, prog: str = "pogosim run") -> i
     try:
         os.execv(command[0], command)
     except OSError as error:
-        is_other = error.errno == errno.ENOEXEC
-        why = (
-            "it is no program, or one for another kind of machine; build it on this one" if is_other else error.strerror
-        )
-        return complain(prog, f"cannot run {command[0]}: {why}")
+        return complain(prog, f"cannot run {command[0]}: {error.strerror}")

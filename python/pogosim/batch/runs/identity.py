@@ -18,6 +18,7 @@ from pogosim.batch.runs.named_files import entries_in, may_be_a_name, texts_at
 from pogosim.batch.runs.run_files import without_outputs
 from pogosim.firmware import is_firmware
 from pogosim.installation import find_installation
+from pogosim.machine_code import of_another_machine
 from pogosim.yaml_1_2 import dump_yaml
 
 # Keys that say, beside the names of outputs, where results go, not what they are.
@@ -48,6 +49,8 @@ def find_program(name: str) -> Path:
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "does not exist"
             raise BatchError(f"the simulator {name} {what}; {expected}")
+        if elsewhere := of_another_machine(path):
+            raise BatchError(elsewhere)
         with path.open("rb") as file:
             content = file.read()
     except OSError as error:
