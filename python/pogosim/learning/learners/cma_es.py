@@ -1,0 +1,48 @@
+"""CMA-ES searches the weights of a policy.
+
+    .venv/bin/python -m pogosim.learning.learners.cma_es phototaxis --budget 2000 -o policy.npz
+
+N. Hansen and A. Ostermeier, "Completely derandomized self-adaptation in evolution strategies", Evolutionary Computation
+9, 2001. All candidates of a generation are judged in the same episodes, at once.
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from pogosim.learning.learners.running import Generation, main
+from pogosim.learning.perceptron import perceptron_of
+from pogosim.learning.tasks import BenchmarkTask, scores
+
+CANDIDATES, EPISODES = 16, 2
+
+
+def cma_es(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> Iterator[Generation]:
+    """Search weights; tells each generation."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of matplotlib, which cma may lack
+        import cma
+
+    each = CANDIDATES * EPISODES
+    with task.make_env(runs=each, **options) as env:
+        network = perceptron_of(env)
+        search = cma.CMAEvolutionStrategy(
+            np.zeros(network.size), 0.5, {"seed": seed, "popsize": CANDIDATES, "verbose": -9}
+        )
+        for generation in range(budget // each):
+            found = np.array(search.ask())
+            by_run = np.repeat(found, EPISODES, axis=0)[:, None]
+            seeds = [1000 * seed + EPISODES * generation + episode for episode in range(EPISODES)] * CANDIDATES
+            judged = scores(env, lambda observation, by_run=by_run: network.act(by_run, observation), seeds)
+            mean = judged.reshape(CANDIDATES, EPISODES).mean(axis=1)
+            search.tell(list(found), list(-mean))
+            yield Generation((generation + 1) * each, mean, np.array(search.mean))
+
+
+if __name__ == "__main__":
+    sys.exit(main(cma_es, __doc__ or ""))

@@ -1,0 +1,109 @@
+"""`pogosim.learning.tasks` and learners: scores that are known, policies that improve, and wrong arguments."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pogosim.learning.learners import cma_es
+from pogosim.learning.learners.running import TEST_SEEDS, learn, main
+from pogosim.learning.perceptron import perceptron_of
+from pogosim.learning.tasks import TASKS, scene, scores
+from pogosim.policy import Policy
+from pogosim.policy.reading import read_policy
+
+STAY = {"end": 0.4, "threads": 1}
+# The optimum is known: a red head, 1.
+RED = replace(
+    TASKS["majority"], configuration=scene({"nb": 1}), reward=lambda swarm: swarm.leds[:, :, 0, 0] / 255, randomize={}
+)
+
+
+def score_of_idle(name: str, poses: list[list[float]], **changes: object) -> float:
+    """Return the score of robots that stay in these poses."""
+    settings = {"objects.robots.nb": None, "objects.robots.poses": poses, **changes}
+    with TASKS[name].make_env(set=settings, **STAY) as env:
+        return float(scores(env, lambda seen: np.zeros((*seen.shape[:2], len(env.outputs))), [1])[0])
+
+
+def test_score_of_aggregation_is_that_of_distances() -> None:
+    assert score_of_idle("aggregation", [[400, 500, 0], [600, 500, 0]]) == pytest.approx(math.exp(-1), abs=1e-4)
+
+
+def test_score_of_coverage_is_the_share_of_disks() -> None:
+    assert score_of_idle("coverage", [[564, 564, 0]]) == pytest.approx(math.pi * 0.15**2, rel=0.02)
+    assert score_of_idle("coverage", [[364, 564, 0], [764, 564, 0]]) == pytest.approx(2 * math.pi * 0.15**2, rel=0.02)
+
+
+def test_score_of_phototaxis_is_the_light() -> None:
+    for value in (250, 1000):
+        uniform = {"objects.lamp.light_mode": "static", "objects.lamp.radius": 3000, "objects.lamp.value": value}
+        assert score_of_idle("phototaxis", [[564, 564, 0]], **uniform) == pytest.approx(value / 1000, abs=2e-3)
+
+
+@pytest.mark.parametrize("red", [-1.0, 1.0])
+def test_score_of_majority_is_the_share_that_is_right(red: float) -> None:
+    with TASKS["majority"].make_env(runs=12, end=2.0, threads=1) as env:
+        found = scores(env, lambda seen: np.broadcast_to([0.0, red, 0, 0], (*seen.shape[:2], 4)), range(12))
+        is_bright = env.reset(seed=range(12))[1]["randomized"]["objects.lamp.value"] > 500
+    assert 0 < is_bright.sum() < 12
+    # The first command takes effect a tick later.
+    np.testing.assert_allclose(found, is_bright == (red > 0), atol=0.11)
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_policies_by_hand_are_better_than_chance(name: str) -> None:
+    random = np.random.default_rng(1)
+    with TASKS[name].make_env(runs=8, threads=1) as env:
+        by_hand = scores(env, TASKS[name].by_hand, range(8))
+        by_chance = scores(env, lambda seen: random.uniform(-1, 1, (*seen.shape[:2], len(env.outputs))), range(8))
+    assert by_hand.mean() > by_chance.mean() + 0.04
+    assert 0 <= by_hand.min() <= by_hand.max() <= 1
+
+
+def test_cma_es_finds_a_known_optimum_and_repeats_itself() -> None:
+    said: list[str] = []
+    first = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
+    again = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
+    assert len(first.tested) == len(TEST_SEEDS)
+    assert first.curve[-1] > first.curve[0] + 0.2
+    assert first.tested.mean() > 0.85
+    assert first.weights.tobytes() == again.weights.tobytes()
+    assert said[: len(said) // 2] == said[len(said) // 2 :]
+
+
+def test_command_line_writes_a_policy_that_acts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "policy.npz"
+    assert main(cma_es.cma_es, "About.", ["majority", "--budget", "32", "--seed", "2", "-o", str(file)]) == 0
+    assert capsys.readouterr().out.startswith("episodes     32: mean 0.")
+    with TASKS["majority"].make_env(threads=1) as env:
+        found = env.check_policy(file)
+        network = perceptron_of(env)
+        parts = [found[f"layer{layer}_{part}"] for layer in (0, 1) for part in ("weights", "bias")]
+        weights = np.concatenate([np.column_stack([parts[layer], parts[layer + 1]]).ravel() for layer in (0, 2)])
+        seen, _ = env.reset(seed=3)
+        acts = network.act(weights, seen[0])
+        low, high = env.policy_arrays()["input_low"], env.policy_arrays()["input_high"]
+        raw = low + (seen[0] + 1) / 2 * (high - low)
+    outputs = Policy(read_policy(file)).step(raw)
+    np.testing.assert_allclose(outputs, (acts + 1) / 2 * 255, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["fototaxis"], "there is no task 'fototaxis'; did you mean 'phototaxis'?"),
+        (["phototaxis", "--budget", "3"], "--budget: 3 episodes are too few for a generation of this learner"),
+        (["phototaxis", "--seed", "0"], "argument --seed: expected an integer from 1 on, found '0'"),
+    ],
+)
+def test_wrong_arguments_are_one_line(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        code = main(cma_es.cma_es, "About.", arguments)
+    except SystemExit as end:  # of argparse
+        code = int(end.code or 0)
+    assert code == 2
+    assert capsys.readouterr().err.rstrip().endswith(said)
