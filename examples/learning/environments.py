@@ -5,13 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-from pogosim.learning import SwarmArrays, SwarmEnv
+from pogosim.learning import SwarmEnv
+from pogosim.learning.tasks import nearness
 
 ROOT = Path(__file__).resolve().parents[2]
 BRIGHTEST = 30000  # sensor counts, below the lamp
-NEAR_MM = 200.0
 # Numbers of a robot's observation, as main.c has them, each from -1 to 1.
 OBSERVATIONS = ("light", "light ahead", "light to the right", "heard in front", "right", "back", "left")
 ACTIONS = ("right motor", "left motor")
@@ -37,14 +35,6 @@ def light_seeker(**options: Any) -> SwarmEnv:
     """
     settings = {"objects.robots.nb": 1, "objects.lamp.value": BRIGHTEST}
     return commanded_robots(f"light / {BRIGHTEST}", settings, **options)
-
-
-def nearness(swarm: SwarmArrays) -> npt.NDArray[np.float64]:
-    """Return the mean of exp(-d / 200 mm) over the distances d of each robot to all others. Shape (runs, robots)."""
-    places = swarm.positions.astype(np.float64)
-    distances = np.hypot(*np.moveaxis(places[:, :, None] - places[:, None], -1, 0))
-    near: npt.NDArray[np.float64] = np.exp(-distances / NEAR_MM).sum(axis=-1)
-    return (near - 1.0) / max(1, swarm.robots - 1)  # each is at distance 0 from itself
 
 
 def gathering(robots: int = 8, **options: Any) -> SwarmEnv:

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from pogosim.learning.learners import cma_es
-from pogosim.learning.learners.running import TEST_SEEDS, learn, main
+from pogosim.learning.learners.running import TEST_EPISODES, Generation, learn, main
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.tasks import TASKS, scene, scores
 from pogosim.policy import Policy
+from pogosim.policy.errors import PolicyError
 from pogosim.policy.reading import read_policy
 
-STAY = {"end": 0.4, "threads": 1}
+STAY: dict[str, Any] = {"end": 0.4, "threads": 1}
 # The optimum is known: a red head, 1.
 RED = replace(
     TASKS["majority"], configuration=scene({"nb": 1}), reward=lambda swarm: swarm.leds[:, :, 0, 0] / 255, randomize={}
@@ -68,7 +71,7 @@ def test_cma_es_finds_a_known_optimum_and_repeats_itself() -> None:
     said: list[str] = []
     first = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
     again = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
-    assert len(first.tested) == len(TEST_SEEDS)
+    assert len(first.tested) == TEST_EPISODES
     assert first.curve[-1] > first.curve[0] + 0.2
     assert first.tested.mean() > 0.85
     assert first.weights.tobytes() == again.weights.tobytes()
@@ -77,7 +80,7 @@ def test_cma_es_finds_a_known_optimum_and_repeats_itself() -> None:
 
 def test_command_line_writes_a_policy_that_acts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "policy.npz"
-    assert main(cma_es.cma_es, "About.", ["majority", "--budget", "32", "--seed", "2", "-o", str(file)]) == 0
+    assert main(cma_es.cma_es, "cma_es", "About.", ["majority", "--budget", "32", "--seed", "2", "-o", str(file)]) == 0
     assert capsys.readouterr().out.startswith("episodes     32: mean 0.")
     with TASKS["majority"].make_env(threads=1) as env:
         found = env.check_policy(file)
@@ -92,18 +95,53 @@ def test_command_line_writes_a_policy_that_acts_alike(tmp_path: Path, capsys: py
     np.testing.assert_allclose(outputs, (acts + 1) / 2 * 255, atol=0.05)
 
 
+def code_of(command: Callable[[], int]) -> int:
+    """Return the exit code of a command line."""
+    try:
+        return command()
+    except SystemExit as end:  # of its parser
+        return int(end.code or 0)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["fototaxis"], "there is no task 'fototaxis'; did you mean 'phototaxis'?"),
         (["phototaxis", "--budget", "3"], "--budget: 3 episodes are too few for a generation of this learner"),
-        (["phototaxis", "--seed", "0"], "argument --seed: expected an integer from 1 on, found '0'"),
+        (["phototaxis", "--seed", "-1"], "'-1' is not a whole number from 0 to 2147483646; "),
+        (["phototaxis", "-o", "policy.txt"], "policy.txt does not end in .npz"),
+        (["phototaxis", "-o", "nowhere/policy.npz"], "nowhere/policy.npz cannot be written: there is no folder "),
     ],
 )
 def test_wrong_arguments_are_one_line(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    try:
-        code = main(cma_es.cma_es, "About.", arguments)
-    except SystemExit as end:  # of argparse
-        code = int(end.code or 0)
-    assert code == 2
-    assert capsys.readouterr().err.rstrip().endswith(said)
+    assert code_of(lambda: main(cma_es.cma_es, "cma_es", "About.", arguments)) == 2
+    printed = capsys.readouterr()
+    (line,) = printed.err.splitlines()
+    assert line.startswith("python -m pogosim.learning.learners.cma_es: ")
+    assert said in line
+    assert printed.out == ""
+
+
+@pytest.mark.parametrize(
+    ("problem", "code"), [(PolicyError("weights are not finite"), 2), (KeyboardInterrupt(), 130), (OSError("full"), 2)]
+)
+def test_search_that_ends_early_says_so_in_one_line(
+    problem: BaseException, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def learner(*_task: object, **_options: object) -> Iterator[Generation]:
+        raise problem
+
+    assert main(learner, "own", "About.", ["phototaxis"]) == code
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("python -m pogosim.learning.learners.own: ")
+
+
+def test_weights_that_are_no_numbers_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def learner(*_task: object, **_options: object) -> Iterator[Generation]:
+        yield Generation(1, np.zeros(1), np.full(38, 1e300))
+
+    file = tmp_path / "policy.npz"
+    assert main(learner, "own", "About.", ["phototaxis", "-o", str(file)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith("layer 0: weights[0, 0]: expected a finite number of 32 bits, found 1e+300")
+    assert [*tmp_path.iterdir()] == []

@@ -63,13 +63,12 @@ class Perceptron:
         """Write a policy into an .npz file, with what its inputs and outputs are.
 
         Raises:
+            PolicyError: Weights are not finite, or too large.
             OSError: It cannot be written.
         """
         dense = [Dense(matrix[:, :-1], matrix[:, -1], "tanh") for matrix in self.layers(np.asarray(weights))]
-        arrays = env.policy_arrays()
-        scaling = {name: arrays[name] for name in arrays if not name.endswith("_names")}
-        texts = {name: arrays[name].tolist() for name in arrays if name.endswith("_names")}
-        Policy(network_of(dense, **scaling, **texts)).save(file)
+        described: dict[str, Any] = {name: array.tolist() for name, array in env.policy_arrays().items()}
+        Policy(network_of(dense, **described)).save(file)
 
 
 def perceptron_of(env: SwarmEnv, hidden: int = 6) -> Perceptron:

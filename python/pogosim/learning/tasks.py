@@ -57,7 +57,8 @@ def points_of_arena() -> Array:
     """Return the points of a grid that are in the arena, mm. Shape (points, 2)."""
     axis = np.arange(GRID_MM / 2, 2 * ARENA_RADIUS_MM, GRID_MM)
     points = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-    return points[np.hypot(*(points - ARENA_RADIUS_MM).T) <= ARENA_RADIUS_MM]
+    inside: Array = points[np.hypot(*(points - ARENA_RADIUS_MM).T) <= ARENA_RADIUS_MM]
+    return inside
 
 
 POINTS = points_of_arena()
@@ -69,13 +70,15 @@ def covered(swarm: SwarmArrays) -> Array:
     for robot in range(swarm.robots):
         away = POINTS - swarm.positions[:, robot, None].astype(np.float64)
         is_near |= np.einsum("rpc,rpc->rp", away, away) <= COVERED_MM**2
-    return is_near.mean(axis=1)
+    share: Array = is_near.mean(axis=1)
+    return share
 
 
 def is_right(swarm: SwarmArrays) -> Array:
     """Return whether the head is red in bright light, and not in dim light: 0 or 1. Shape (runs, robots)."""
     says_bright = swarm.leds[:, :, 0, 0] > FULL // 2
-    return (says_bright == (swarm["light"] > MIDDLE)).astype(np.float64)
+    right: Array = says_bright == (swarm["light"] > MIDDLE)
+    return right.astype(np.float64)
 
 
 # ---- Policies written by hand

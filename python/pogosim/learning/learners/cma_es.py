@@ -11,11 +11,13 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Iterator
+from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from pogosim.learning.learners.running import Generation, main
+from pogosim.learning.learners.running import Generation, learning_seeds, main
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.tasks import BenchmarkTask, scores
 
@@ -32,17 +34,18 @@ def cma_es(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> Itera
     with task.make_env(runs=each, **options) as env:
         network = perceptron_of(env)
         search = cma.CMAEvolutionStrategy(
-            np.zeros(network.size), 0.5, {"seed": seed, "popsize": CANDIDATES, "verbose": -9}
+            np.zeros(network.size), 0.5, {"seed": seed + 1, "popsize": CANDIDATES, "verbose": -9}
         )
+        seeds_of_episodes = learning_seeds(seed)
         for generation in range(budget // each):
             found = np.array(search.ask())
             by_run = np.repeat(found, EPISODES, axis=0)[:, None]
-            seeds = [1000 * seed + EPISODES * generation + episode for episode in range(EPISODES)] * CANDIDATES
-            judged = scores(env, lambda observation, by_run=by_run: network.act(by_run, observation), seeds)
+            seeds = [*islice(seeds_of_episodes, EPISODES)] * CANDIDATES
+            judged = scores(env, partial(network.act, by_run), seeds)
             mean = judged.reshape(CANDIDATES, EPISODES).mean(axis=1)
             search.tell(list(found), list(-mean))
             yield Generation((generation + 1) * each, mean, np.array(search.mean))
 
 
 if __name__ == "__main__":
-    sys.exit(main(cma_es, __doc__ or ""))
+    sys.exit(main(cma_es, "cma_es", __doc__ or ""))

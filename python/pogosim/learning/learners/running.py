@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
+from pogosim.command.parser import Parser, complain, guarded, whole
 from pogosim.learning.perceptron import perceptron_of
-from pogosim.learning.tasks import TASKS, BenchmarkTask, scores, task_of
+from pogosim.learning.swarm_env import SwarmEnv
+from pogosim.learning.tasks import TASKS, BenchmarkTask, Controller, scores, task_of
+from pogosim.lines import say
+from pogosim.outputs import OutputError, partial_output, real_output
 from pogosim.simulation import ConfigurationError, SimulationError
 
 Array = npt.NDArray[Any]
-TEST_SEEDS = range(1_000_000, 1_000_016)  # episodes that nothing is learnt from
+TEST_EPISODES = 16
+FIRST_TEST_SEED = 2**30  # seeds of episodes: those below are for learning
+MOST_SEED = 2**31 - 2  # of CMA-ES
+INTERRUPTED = 130  # exit code
 
 
 @dataclass(frozen=True)
@@ -44,26 +52,40 @@ class Learnt:
 
     Attributes:
         weights: The policy.
+        tested: Scores of the policy in the test episodes. Shape (TEST_EPISODES,).
         episodes: How many were used, after each generation.
         curve: Mean score of the policies tried in each generation.
-        tested: Scores of the policy in the test episodes.
     """
 
     weights: Array
     tested: Array
-    episodes: list[int] = field(default_factory=list)
-    curve: list[float] = field(default_factory=list)
+    episodes: list[int]
+    curve: list[float]
 
 
-def tested(task: BenchmarkTask, weights: Array, **options: Any) -> Array:
-    """Return the scores of a policy in the test episodes."""
-    with task.make_env(runs=len(TEST_SEEDS), **options) as env:
-        network = perceptron_of(env)
-        return scores(env, lambda observation: network.act(weights, observation), TEST_SEEDS)
+def learning_seeds(seed: int) -> Iterator[int]:
+    """Give seeds of episodes to learn from, never those of test episodes."""
+    generator = np.random.default_rng(seed)
+    while True:
+        yield int(generator.integers(FIRST_TEST_SEED))
+
+
+def tested(task: BenchmarkTask, seed: int, policy_for: Callable[[SwarmEnv], Controller], **options: Any) -> Array:
+    """Return the scores in episodes that nothing is learnt from. Shape (TEST_EPISODES,).
+
+    Args:
+        task: The task.
+        seed: Which episodes: equal seeds give the same.
+        policy_for: Gives what the robots of an environment do.
+        **options: Those of environments.
+    """
+    first = FIRST_TEST_SEED + TEST_EPISODES * seed
+    with task.make_env(runs=TEST_EPISODES, **options) as env:
+        return scores(env, policy_for(env), range(first, first + TEST_EPISODES))
 
 
 def learn(
-    learner: Learner, task: BenchmarkTask, budget: int, seed: int, say: Callable[[str], None] = print, **options: Any
+    learner: Learner, task: BenchmarkTask, budget: int, seed: int, tell: Callable[[str], None] = say, **options: Any
 ) -> Learnt:
     """Let a learner learn, and test what it has learnt.
 
@@ -72,8 +94,11 @@ def learn(
         task: What is learnt.
         budget: Episodes that it may use.
         seed: Equal ones give equal results.
-        say: What is called with a line for each generation.
+        tell: What is called with a line for each generation.
         **options: Those of environments.
+
+    Raises:
+        ConfigurationError: The budget is too small.
     """
     episodes: list[int] = []
     curve: list[float] = []
@@ -82,39 +107,72 @@ def learn(
         weights = now.weights
         episodes.append(now.episodes)
         curve.append(float(now.scores.mean()))
-        say(f"episodes {now.episodes:6d}: mean {curve[-1]:.4f}, best {now.scores.max():.4f}")
+        tell(f"episodes {now.episodes:6d}: mean {curve[-1]:.4f}, best {now.scores.max():.4f}")
     if weights is None:
         raise ConfigurationError(f"--budget: {budget} episodes are too few for a generation of this learner")
-    return Learnt(weights, tested(task, weights, **options), episodes, curve)
+    found = tested(task, seed, lambda env: partial(perceptron_of(env).act, weights), **options)
+    return Learnt(weights, found, episodes, curve)
 
 
-def count(text: str) -> int:
-    """Return an integer of the command line, from 1 on."""
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected an integer from 1 on, found {text!r}")
-    return value
-
-
-count.__name__ = "integer"
-
-
-def main(learner: Learner, about: str, arguments: Sequence[str] | None = None) -> int:
-    """Run the command line of a learner; returns the exit code."""
-    parser = argparse.ArgumentParser(description=about.partition("\n")[0])
-    parser.add_argument("task", metavar="TASK", help=f"one of {', '.join(TASKS)}")
-    parser.add_argument("--budget", type=count, default=2000, help="episodes (default: %(default)s)")
-    parser.add_argument("--seed", type=count, default=1, help="equal ones give equal results (default: %(default)s)")
-    parser.add_argument("-o", "--output", type=Path, help="where the policy is written: an .npz file")
-    options = parser.parse_args(arguments)
+def ended(prog: str, run: Callable[[], int | None]) -> int:
+    """Run a command; says in one line what keeps it from its end. Returns the exit code: 0, 2, 130 if interrupted."""
     try:
+        return guarded(prog, run)
+    except SimulationError as error:
+        return complain(prog, error)
+    except KeyboardInterrupt:
+        complain(prog, "interrupted")
+        return INTERRUPTED
+
+
+def add_search_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a search."""
+    add = parser.add_argument
+    add("--budget", type=whole(1), default=2000, metavar="N", help="episodes of a search (default: %(default)s)")
+    add(
+        "--seed",
+        type=whole(0, MOST_SEED),
+        default=1,
+        metavar="N",
+        help="equal ones give equal results (default: %(default)s)",
+    )
+
+
+def checked_file(name: str, ending: str) -> Path:
+    """Return where to write.
+
+    Raises:
+        OutputError: There is no folder for it, or its name ends otherwise.
+        OSError: It cannot be looked at.
+    """
+    if not name.endswith(ending):
+        raise OutputError(f"{name} does not end in {ending}")
+    return real_output(name)
+
+
+def main(learner: Learner, name: str, about: str, arguments: Sequence[str] | None = None) -> int:
+    """Run the command line of a learner; returns the exit code.
+
+    Args:
+        learner: What learns.
+        name: That of its module.
+        about: Its text; the first line is for --help.
+        arguments: Those of the command line; None: the process's.
+    """
+    prog = f"python -m pogosim.learning.learners.{name}"
+    parser = Parser(prog=prog, description=about.partition("\n")[0], allow_abbrev=False)
+    parser.add_argument("task", metavar="TASK", help=f"one of {', '.join(TASKS)}")
+    add_search_options(parser)
+    parser.add_argument("-o", "--output", metavar="FILE.npz", help="where the policy is written")
+    options = parser.parse_args(arguments)
+
+    def run() -> None:
         task = task_of(options.task)
+        file = None if options.output is None else checked_file(options.output, ".npz")
         found = learn(learner, task, options.budget, options.seed)
-        print(f"test: {found.tested.mean():.4f} +- {found.tested.std():.4f}")
-        if options.output is not None:
-            with task.make_env() as env:
-                perceptron_of(env).save(found.weights, env, options.output)
-    except (ConfigurationError, SimulationError, OSError) as error:
-        print(f"{parser.prog}: {error}", file=sys.stderr)
-        return 2
-    return 0
+        say(f"test: {found.tested.mean():.4f} +- {found.tested.std():.4f}")
+        if file is not None:
+            with task.make_env() as env, partial_output(file) as unfinished:
+                perceptron_of(env).save(found.weights, env, unfinished)
+
+    return ended(prog, run)
