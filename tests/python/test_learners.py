@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from pogosim.learning.learners import cma_es
-from pogosim.learning.learners.running import TEST_EPISODES, Generation, learn, main
+from pogosim.learning.learners.running import TEST_EPISODES, Generation, Learner, learn, main
 from pogosim.learning.perceptron import perceptron_of
-from pogosim.learning.tasks import TASKS, scene, scores
+from pogosim.learning.tasks import TASKS, BenchmarkTask, means, scene, scores
 from pogosim.policy import Policy
 from pogosim.policy.errors import PolicyError
 from pogosim.policy.reading import read_policy
@@ -21,7 +21,11 @@ from pogosim.policy.reading import read_policy
 STAY: dict[str, Any] = {"end": 0.4, "threads": 1}
 # The optimum is known: a red head, 1.
 RED = replace(
-    TASKS["majority"], configuration=scene({"nb": 1}), reward=lambda swarm: swarm.leds[:, :, 0, 0] / 255, randomize={}
+    TASKS["majority"],
+    configuration=scene({"nb": 1}),
+    reward=lambda swarm: swarm.leds[:, :, 0, 0] / 255,
+    felt=lambda _seen, act: (act[..., 1] + 1) / 2,
+    randomize={},
 )
 
 
@@ -48,13 +52,54 @@ def test_score_of_phototaxis_is_the_light() -> None:
 
 
 @pytest.mark.parametrize("red", [-1.0, 1.0])
-def test_score_of_majority_is_the_share_that_is_right(red: float) -> None:
-    with TASKS["majority"].make_env(runs=12, end=2.0, threads=1) as env:
-        found = scores(env, lambda seen: np.broadcast_to([0.0, red, 0, 0], (*seen.shape[:2], 4)), range(12))
-        is_bright = env.reset(seed=range(12))[1]["randomized"]["objects.lamp.value"] > 500
-    assert 0 < is_bright.sum() < 12
-    # The first command takes effect a tick later.
-    np.testing.assert_allclose(found, is_bright == (red > 0), atol=0.11)
+def test_policy_that_always_says_the_same_is_right_half_of_the_time(red: float) -> None:
+    with TASKS["majority"].make_env(runs=8, threads=1) as env:
+        same = np.broadcast_to([0.0, red, 0, 0], (8, env.robots, 4))
+        found = scores(env, lambda _seen: same, range(8))
+    # The first command takes effect a tick later, and the light changes between two decisions.
+    np.testing.assert_allclose(found, 0.5, atol=0.02)
+
+
+def test_score_of_majority_is_the_share_of_robots_that_are_right() -> None:
+    task = TASKS["majority"]
+    is_bright: list[Any] = []
+
+    def knows(_seen: Any) -> Any:
+        is_bright.append(env.swarm["light"] > 500)
+        red = np.where(is_bright[-1], 1.0, -1.0)
+        red[:, :3] *= -1  # three of ten are always wrong
+        return np.stack([np.zeros_like(red), red, -red, -red], axis=-1)
+
+    with task.make_env(runs=8, threads=1) as env:
+        found = means(env, knows, range(8), task.behaviours)
+    np.testing.assert_allclose(found[:, 0], 0.7, atol=0.02)
+    np.testing.assert_allclose(found[:, 1], 0.5, atol=0.03)  # red robots
+    np.testing.assert_allclose(found[:, 2], 0.3, atol=0.01)  # of another opinion than most
+    begins = [int(np.argmax(light)) for light in np.array(is_bright)[..., 0].T]
+    assert len(set(begins)) > 4  # bright from a time that cannot be known
+
+
+def test_behaviours_of_motion_are_speed_and_company() -> None:
+    settings = {"objects.robots.nb": None, "objects.robots.poses": [[400, 500, 0], [550, 500, 0], [900, 500, 0]]}
+    task = TASKS["aggregation"]
+    with task.make_env(set=settings, **STAY) as env:
+        (idle,) = means(env, lambda seen: np.zeros((*seen.shape[:2], 3)), [1], task.behaviours)
+    assert idle[1] == pytest.approx(0, abs=1e-6)
+    assert idle[2] == pytest.approx(1 / 3)  # two of the three have one of their two others within 200 mm
+
+
+def test_what_a_robot_knows_of_its_reward() -> None:
+    bright, dark = [[[0.5, 0.5, 0.5, -1, 0, -1, -1, -1]]], [[[-0.5, -0.5, -0.5, -1, -1, -1, -1, -1]]]
+    red = np.array([[[0.0, 1.0, 0.0, 0.0]]])
+    felt = {
+        name: [float(task.felt(np.array(seen), red)[0, 0]) for seen in (bright, dark)] for name, task in TASKS.items()
+    }
+    assert felt == {
+        "phototaxis": [0.75, 0.25],
+        "aggregation": [0.125, 0.0],
+        "coverage": [0.875, 1.0],
+        "majority": [1.0, 0.0],
+    }
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -67,14 +112,26 @@ def test_policies_by_hand_are_better_than_chance(name: str) -> None:
     assert 0 <= by_hand.min() <= by_hand.max() <= 1
 
 
-def test_cma_es_finds_a_known_optimum_and_repeats_itself() -> None:
+@pytest.mark.parametrize(
+    ("learner", "task", "budget", "end_s"),
+    [
+        (cma_es.cma_es, RED, 320, 1.0),
+    ],
+    ids=["cma_es"],
+)
+def test_learner_finds_a_known_optimum_and_repeats_itself(
+    learner: Learner, task: BenchmarkTask, budget: int, end_s: float
+) -> None:
     said: list[str] = []
-    first = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
-    again = learn(cma_es.cma_es, RED, 320, 1, said.append, end=1.0, threads=1)
+    first = learn(learner, task, budget, 1, said.append, 8, end=end_s, threads=1)
+    again = learn(learner, task, budget, 1, said.append, end=end_s, threads=1)
     assert len(first.tested) == TEST_EPISODES
-    assert first.curve[-1] > first.curve[0] + 0.2
-    assert first.tested.mean() > 0.85
+    assert len(first.curve) == len(first.episodes) == 8
+    assert first.episodes[-1] == budget
+    assert first.curve[-1] == first.tested.mean()
+    assert first.tested.mean() > max(0.85, first.curve[0])
     assert first.weights.tobytes() == again.weights.tobytes()
+    assert first.tested.tobytes() == again.tested.tobytes()
     assert said[: len(said) // 2] == said[len(said) // 2 :]
 
 

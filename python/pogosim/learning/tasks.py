@@ -28,7 +28,8 @@ BRIGHTEST = 1000  # sensor counts at the lamp of phototaxis
 NEAR_MM = 200.0
 COVERED_MM = 150.0
 GRID_MM = 25.0
-MIDDLE, STEP, NOISE = 500, 50, 150  # sensor counts: what majority decides on
+DIM, BRIGHT, NOISE = 450, 550, 150  # sensor counts: what majority decides on
+BRIGHT_S = 10.0  # half of an episode
 FULL = 255  # of a byte
 
 
@@ -40,6 +41,11 @@ def scene(robots: Mapping[str, Any], **objects: Any) -> dict[str, Any]:
         "initial_formation": "random",
         "objects": {**objects, "robots": {"type": "pogobot", "communication_radius": 300, **robots}},
     }
+
+
+def uniform_light(**lamp: Any) -> dict[str, Any]:
+    """Return a lamp that lights all of the arena."""
+    return {"type": "static_light", "geometry": "arena", "light_mode": "static", **lamp}
 
 
 # ---- Rewards
@@ -61,24 +67,102 @@ def points_of_arena() -> Array:
     return inside
 
 
-POINTS = points_of_arena()
+POINTS = (points_of_arena() - ARENA_RADIUS_MM).astype(np.float32)  # from the middle, as are places below
+SQUARES = np.einsum("pc,pc->p", POINTS, POINTS)
 
 
 def covered(swarm: SwarmArrays) -> Array:
     """Return the share of the arena that is within 150 mm of a robot. Shape (runs,)."""
-    is_near = np.zeros((len(swarm.runs), len(POINTS)), dtype=np.bool_)
-    for robot in range(swarm.robots):
-        away = POINTS - swarm.positions[:, robot, None].astype(np.float64)
-        is_near |= np.einsum("rpc,rpc->rp", away, away) <= COVERED_MM**2
-    share: Array = is_near.mean(axis=1)
+    places = (swarm.positions - ARENA_RADIUS_MM).astype(np.float32)
+    # |p - q|^2 = |p|^2 + |q|^2 - 2 p q
+    squared = SQUARES - 2 * (places @ POINTS.T) + np.einsum("nrc,nrc->nr", places, places)[..., None]
+    share: Array = (squared.min(axis=1) <= COVERED_MM**2).mean(axis=1)
     return share
+
+
+def is_red(swarm: SwarmArrays) -> Array:
+    """Return whether the head is red: 0 or 1. Shape (runs, robots)."""
+    red: Array = (swarm.leds[:, :, 0, 0] > FULL // 2).astype(np.float64)
+    return red
 
 
 def is_right(swarm: SwarmArrays) -> Array:
     """Return whether the head is red in bright light, and not in dim light: 0 or 1. Shape (runs, robots)."""
-    says_bright = swarm.leds[:, :, 0, 0] > FULL // 2
-    right: Array = says_bright == (swarm["light"] > MIDDLE)
+    right: Array = is_red(swarm) == (swarm["light"] > (DIM + BRIGHT) / 2)
     return right.astype(np.float64)
+
+
+# ---- What a robot can know of its reward, from its observation and its action
+
+
+def heard_by_each(observation: Array) -> Array:
+    """Return how many messages all faces have heard, as a share of 8 each. Shape (runs, robots), from 0 to 1."""
+    return (observation[..., -4:] + 1).mean(axis=-1) / 2
+
+
+def light_felt(observation: Array, _action: Array) -> Array:
+    """Return the mean of the three photosensors."""
+    return (observation[..., :3].mean(axis=-1) + 1) / 2
+
+
+def company(observation: Array, _action: Array) -> Array:
+    """Return how much is heard of others."""
+    return heard_by_each(observation)
+
+
+def solitude(observation: Array, _action: Array) -> Array:
+    """Return how little is heard of others."""
+    return 1 - heard_by_each(observation)
+
+
+def says_what_it_sees(observation: Array, action: Array) -> Array:
+    """Return 1 where the head is red and the photosensors are bright, or neither; else 0."""
+    agrees: Array = (action[..., 1] > 0) == (observation[..., :3].mean(axis=-1) > 0)
+    return agrees.astype(np.float64)
+
+
+# ---- How a swarm behaves
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """A number that tells how a swarm behaves, not how well.
+
+    Attributes:
+        name: In words, with its unit.
+        of: Gives it now, for each robot: shape (runs, robots).
+        low: The least that is usual.
+        high: The greatest.
+    """
+
+    name: str
+    of: Callable[[SwarmArrays], Array]
+    low: float
+    high: float
+
+
+def crowding(swarm: SwarmArrays) -> Array:
+    """Return the share of the others within 200 mm. Shape (runs, robots)."""
+    places = swarm.positions.astype(np.float64)
+    is_near = np.hypot(*np.moveaxis(places[:, :, None] - places[:, None], -1, 0)) < NEAR_MM
+    share: Array = (is_near.sum(axis=-1) - 1) / max(1, swarm.robots - 1)
+    return share
+
+
+def in_minority(swarm: SwarmArrays) -> Array:
+    """Return the share of robots that decide otherwise than most. Shape (runs, robots), alike in a run."""
+    red = is_red(swarm).mean(axis=1, keepdims=True)
+    return np.broadcast_to(np.minimum(red, 1 - red), (len(swarm.runs), swarm.robots))
+
+
+MOTION = (
+    Behaviour("mean speed, mm/s", lambda swarm: swarm["speed"], 0.0, 100.0),
+    Behaviour("share of the others within 200 mm", crowding, 0.0, 1.0),
+)
+OPINION = (
+    Behaviour("share of robots that are red", is_red, 0.0, 1.0),
+    Behaviour("share of robots in the minority", in_minority, 0.0, 0.5),
+)
 
 
 # ---- Policies written by hand
@@ -129,6 +213,9 @@ class BenchmarkTask:
         actions: Likewise.
         reward: Likewise, from 0 to 1.
         by_hand: A policy that a person would write.
+        felt: What a robot can know of its reward: of observations, shape (runs, robots, inputs), and actions (runs,
+            robots, outputs), a number from 0 to 1 for each robot.
+        behaviours: Two, by which swarms may differ.
         aim: What is known of the score from the literature, in words.
         randomize: As `SwarmEnv` takes it.
         end_s: Length of an episode, s.
@@ -142,6 +229,8 @@ class BenchmarkTask:
     actions: Sequence[Any]
     reward: Any
     by_hand: Controller
+    felt: Callable[[Array, Array], Array]
+    behaviours: tuple[Behaviour, Behaviour]
     aim: str
     randomize: Mapping[str, Any] = field(default_factory=dict)
     end_s: float = 20.0
@@ -191,6 +280,8 @@ TASKS = {
             ["motors"],
             f"light / {BRIGHTEST}",
             to_light,
+            light_felt,
+            MOTION,
             "no published curve is comparable: they are of other lamps and arenas",
         ),
         BenchmarkTask(
@@ -201,6 +292,8 @@ TASKS = {
             ["motors", BEACON],
             nearness,
             to_others,
+            company,
+            MOTION,
             "Gauci et al. (2014) gather robots by a sensor of the line of sight, which Pogobots lack: not comparable",
         ),
         BenchmarkTask(
@@ -211,6 +304,8 @@ TASKS = {
             ["motors", BEACON],
             covered,
             from_others,
+            solitude,
+            MOTION,
             "12 disks of 150 mm cover at most 0.85 of the arena, where none overlaps another or the wall",
         ),
         BenchmarkTask(
@@ -218,16 +313,22 @@ TASKS = {
             "decide whether it is bright",
             scene(
                 {"nb": 10, "photosensors_noise_stddev": NOISE},
-                lamp={"type": "static_light", "geometry": "arena", "light_mode": "static", "value": MIDDLE + STEP},
+                lamp=uniform_light(value=DIM),
+                # One more for half of the episode, from a time that is drawn.
+                other_lamp=uniform_light(
+                    value=0, photo_start_at=0, photo_start_duration=BRIGHT_S, photo_start_value=BRIGHT - DIM
+                ),
             ),
-            [("photosensors", 0, 2 * MIDDLE), BEACON, HEARD],
+            [("photosensors", 0, DIM + BRIGHT), BEACON, HEARD],
             [BEACON, ("led", 0, FULL)],
             is_right,
             with_others,
+            says_what_it_sees,
+            OPINION,
             "one reading of a robot alone is right in 0.72 of cases, and "
             "the mean of one reading of each in 0.97 (normal distribution)",
-            {"objects.lamp.value": {"type": "categorical", "choices": [MIDDLE - STEP, MIDDLE + STEP]}},
-            10.0,
+            {"objects.other_lamp.photo_start_at": [0.0, BRIGHT_S]},
+            2 * BRIGHT_S,
         ),
     )
 }
@@ -244,17 +345,28 @@ def task_of(name: str) -> BenchmarkTask:
     return TASKS[name]
 
 
-def scores(env: SwarmEnv, policy: Controller, seeds: Sequence[int]) -> npt.NDArray[np.float64]:
-    """Return the score of one episode in each run: the mean reward over steps and robots. Shape (runs,).
+def means(env: SwarmEnv, policy: Controller, seeds: Sequence[int], behaviours: Sequence[Behaviour] = ()) -> Array:
+    """Return means over the steps and robots of one episode in each run: the score, then behaviours.
 
     Args:
         env: The environment.
         policy: What the robots do.
         seeds: One for each run.
+        behaviours: What is measured besides.
+
+    Returns:
+        Shape (runs, 1 + behaviours).
     """
     observation, _ = env.reset(seed=seeds)
-    total = np.zeros(len(env))
+    total = np.zeros((len(env), 1 + len(behaviours)))
     for _ in range(env.episode_steps):
         observation, reward, *_ = env.step(policy(observation))
-        total += reward.mean(axis=1)
+        values = [reward, *(behaviour.of(env.swarm) for behaviour in behaviours)]
+        total += np.stack([value.mean(axis=1) for value in values], axis=-1)
     return total / env.episode_steps
+
+
+def scores(env: SwarmEnv, policy: Controller, seeds: Sequence[int]) -> npt.NDArray[np.float64]:
+    """Return the score of one episode in each run, see `means`. Shape (runs,)."""
+    score: npt.NDArray[np.float64] = means(env, policy, seeds)[:, 0]
+    return score

@@ -53,8 +53,8 @@ class Learnt:
     Attributes:
         weights: The policy.
         tested: Scores of the policy in the test episodes. Shape (TEST_EPISODES,).
-        episodes: How many were used, after each generation.
-        curve: Mean score of the policies tried in each generation.
+        episodes: How many had been used at each test.
+        curve: Mean score in each test of the policy that the learner would have given then.
     """
 
     weights: Array
@@ -85,7 +85,13 @@ def tested(task: BenchmarkTask, seed: int, policy_for: Callable[[SwarmEnv], Cont
 
 
 def learn(
-    learner: Learner, task: BenchmarkTask, budget: int, seed: int, tell: Callable[[str], None] = say, **options: Any
+    learner: Learner,
+    task: BenchmarkTask,
+    budget: int,
+    seed: int,
+    tell: Callable[[str], None] = say,
+    tests: int = 1,
+    **options: Any,
 ) -> Learnt:
     """Let a learner learn, and test what it has learnt.
 
@@ -95,23 +101,27 @@ def learn(
         budget: Episodes that it may use.
         seed: Equal ones give equal results.
         tell: What is called with a line for each generation.
+        tests: How often the policy is tested, at equal distances, the last time at the end. The learner does not know.
         **options: Those of environments.
 
     Raises:
         ConfigurationError: The budget is too small.
     """
-    episodes: list[int] = []
-    curve: list[float] = []
-    weights = None
+    found = Learnt(np.empty(0), np.empty(0), [], [])
+    now = None
+
+    def test(now: Generation) -> Learnt:
+        scores = tested(task, seed, lambda env: partial(perceptron_of(env).act, now.weights), **options)
+        curve = [*found.curve, float(scores.mean())]
+        return Learnt(now.weights, scores, [*found.episodes, now.episodes], curve)
+
     for now in learner(task, budget, seed, **options):
-        weights = now.weights
-        episodes.append(now.episodes)
-        curve.append(float(now.scores.mean()))
-        tell(f"episodes {now.episodes:6d}: mean {curve[-1]:.4f}, best {now.scores.max():.4f}")
-    if weights is None:
+        tell(f"episodes {now.episodes:6d}: mean {now.scores.mean():.4f}, best {now.scores.max():.4f}")
+        if now.episodes * tests >= budget * (len(found.curve) + 1):
+            found = test(now)
+    if now is None:
         raise ConfigurationError(f"--budget: {budget} episodes are too few for a generation of this learner")
-    found = tested(task, seed, lambda env: partial(perceptron_of(env).act, weights), **options)
-    return Learnt(weights, found, episodes, curve)
+    return found if found.episodes[-1:] == [now.episodes] else test(now)
 
 
 def ended(prog: str, run: Callable[[], int | None]) -> int:
