@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pogosim.learning.learners import cma_es
+from pogosim.learning.learners import cma_es, embodied, map_elites, ppo
 from pogosim.learning.learners.running import TEST_EPISODES, Generation, Learner, learn, main
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.tasks import TASKS, BenchmarkTask, means, scene, scores
@@ -116,8 +116,11 @@ def test_policies_by_hand_are_better_than_chance(name: str) -> None:
     ("learner", "task", "budget", "end_s"),
     [
         (cma_es.cma_es, RED, 320, 1.0),
+        (ppo.ppo, RED, 320, 2.0),
+        (map_elites.map_elites, RED, 480, 1.0),
+        (embodied.embodied, replace(RED, configuration=scene({"nb": 6, "communication_radius": 1200})), 60, 2.0),
     ],
-    ids=["cma_es"],
+    ids=["cma_es", "ppo", "map_elites", "embodied"],
 )
 def test_learner_finds_a_known_optimum_and_repeats_itself(
     learner: Learner, task: BenchmarkTask, budget: int, end_s: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pogosim.command.parser import Parser, complain, guarded, whole
+from pogosim.extras import installing
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.learning.tasks import TASKS, BenchmarkTask, Controller, scores, task_of
@@ -82,6 +84,18 @@ def tested(task: BenchmarkTask, seed: int, policy_for: Callable[[SwarmEnv], Cont
     first = FIRST_TEST_SEED + TEST_EPISODES * seed
     with task.make_env(runs=TEST_EPISODES, **options) as env:
         return scores(env, policy_for(env), range(first, first + TEST_EPISODES))
+
+
+def require(package: str) -> None:
+    """Check that an optional package is there.
+
+    Raises:
+        ConfigurationError: It is missing; says how to install it.
+    """
+    if importlib.util.find_spec(package) is None:
+        raise ConfigurationError(
+            f"this learner needs the Python package '{package}'; install it: {installing('optimize')}"
+        )
 
 
 def learn(
