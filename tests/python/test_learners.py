@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -118,7 +119,7 @@ def test_policies_by_hand_are_better_than_chance(name: str) -> None:
         (cma_es.cma_es, RED, 320, 1.0),
         (ppo.ppo, RED, 320, 2.0),
         (map_elites.map_elites, RED, 480, 1.0),
-        (embodied.embodied, replace(RED, configuration=scene({"nb": 6, "communication_radius": 1200})), 60, 2.0),
+        (embodied.embodied, replace(RED, configuration=scene({"nb": 6, "communication_radius": 1200})), 160, 2.0),
     ],
     ids=["cma_es", "ppo", "map_elites", "embodied"],
 )
@@ -194,6 +195,15 @@ def test_search_that_ends_early_says_so_in_one_line(
     assert main(learner, "own", "About.", ["phototaxis"]) == code
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("python -m pogosim.learning.learners.own: ")
+
+
+def test_learner_without_its_package_says_how_to_install_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
+    assert main(map_elites.map_elites, "map_elites", "About.", ["phototaxis"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "map_elites: this learner needs the Python package 'ribs'; install it: " in line
 
 
 def test_weights_that_are_no_numbers_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -77,9 +77,10 @@ def test_file_has_each_test_in_a_row(
     assert [*rows] == ["task", "policy", "seed", "episodes", "score"]
     assert rows["seed"].tolist() == [1] * 4 + [2] * 4
     lines = capsys.readouterr().out.splitlines()
-    last = rows.groupby(["seed", "policy"], sort=False).last()["score"]
+    last = rows[~rows.duplicated(["seed", "policy"], keep="last")]
     assert [line.rpartition(",")[0] for line in lines[:6]] == [
-        f"phototaxis, seed {seed}: {policy} {score:.3f}" for (seed, policy), score in last.items()
+        f"phototaxis, seed {seed}: {policy} {score:.3f}"
+        for policy, seed, score in zip(last["policy"], last["seed"], last["score"], strict=True)
     ]
     assert lines[6] == ""
     assert len(lines) == 7 + 2 + 3
@@ -112,5 +113,5 @@ def test_missing_package_is_told_before_anything_is_learnt(
     assert main([]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
-    assert "map_elites: it needs the Python package 'ribs'; install it: " in printed.err
+    assert "map_elites: this learner needs the Python package 'ribs'; install it: " in printed.err
     assert benchmark.PACKAGES.keys() <= LEARNERS.keys()

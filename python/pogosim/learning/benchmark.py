@@ -55,7 +55,7 @@ class Result:
     Attributes:
         task: Name of the task.
         policy: "random", "by hand", or the learner's name.
-        seed: Of the search and of the test episodes.
+        seed: That of the search and of the test episodes.
         episodes: Those that it was learnt from until then.
         score: Mean over the test episodes, from 0 to 1.
     """
@@ -91,7 +91,7 @@ def results(
         task: The task.
         learners: Names of learners.
         budget: Episodes that each may use.
-        seed: Of searches and test episodes.
+        seed: That of searches and test episodes.
         **options: Those of environments.
 
     Raises:

@@ -97,12 +97,14 @@ def is_right(swarm: SwarmArrays) -> Array:
 
 def heard_by_each(observation: Array) -> Array:
     """Return how many messages all faces have heard, as a share of 8 each. Shape (runs, robots), from 0 to 1."""
-    return (observation[..., -4:] + 1).mean(axis=-1) / 2
+    heard: Array = (observation[..., -4:] + 1).mean(axis=-1) / 2
+    return heard
 
 
 def light_felt(observation: Array, _action: Array) -> Array:
     """Return the mean of the three photosensors."""
-    return (observation[..., :3].mean(axis=-1) + 1) / 2
+    light: Array = (observation[..., :3].mean(axis=-1) + 1) / 2
+    return light
 
 
 def company(observation: Array, _action: Array) -> Array:

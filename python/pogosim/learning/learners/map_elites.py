@@ -24,6 +24,7 @@ from pogosim.learning.tasks import BenchmarkTask, means
 CANDIDATES, EPISODES = 8, 4
 CELLS = (8, 8)
 FIRST = 0.5  # standard deviation of the first weights
+MUTATION, BETWEEN = 0.1, 0.2  # standard deviations: of weights, and of steps between two elites, as a share of their distance
 
 
 def map_elites(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> Iterator[Generation]:
@@ -43,7 +44,7 @@ def map_elites(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> I
         archive = GridArchive(solution_dim=network.size, dims=CELLS, ranges=ranges, seed=seed)
         first = np.random.default_rng(seed).normal(0.0, FIRST, (4 * CANDIDATES, network.size))
         emitter = IsoLineEmitter(
-            archive, iso_sigma=0.1, line_sigma=0.2, x0=np.zeros(network.size), batch_size=CANDIDATES, seed=seed
+            archive, iso_sigma=MUTATION, line_sigma=BETWEEN, x0=np.zeros(network.size), batch_size=CANDIDATES, seed=seed
         )
         seeds_of_episodes = learning_seeds(seed)
         for generation in range(budget // each):

@@ -26,10 +26,10 @@ from pogosim.learning.tasks import BenchmarkTask
 Array = npt.NDArray[np.float64]
 
 EPISODES = 8  # between two updates
-EPOCHS, BATCH = 6, 1024  # passes through these, and samples of a step of the gradient
+EPOCHS, BATCH = 10, 512  # passes through these, and samples of a step of the gradient
 DISCOUNT, TRACE = 0.97, 0.95  # of rewards and of advantages, for each decision
 CLIP = 0.2  # by which the probability of an action may grow or shrink in an update
-LEARNING_RATE = 3e-3  # at first; falls to 0
+LEARNING_RATE = 1e-2  # at first; falls to 0
 LONGEST = 0.5  # Euclidean norm of a gradient
 FIRST_SPREAD = 0.6  # standard deviation of actions, which are from -1 to 1
 CRITIC_UNITS = 32
@@ -42,7 +42,7 @@ class Samples:
     Attributes:
         observation: Shape (samples, inputs).
         action: Shape (samples, outputs).
-        log_probability: Of the action when it was chosen. Shape (samples,).
+        log_probability: That of the action when it was chosen. Shape (samples,).
         advantage: How much better it was than what was expected. Shape (samples,).
         target: What it was worth: rewards from then on, discounted. Shape (samples,).
     """

@@ -35,7 +35,7 @@ class Generation:
 
     Attributes:
         episodes: Those that it has used until now.
-        scores: Of the policies that it has tried since it last told, each from 0 to 1. Shape (any,).
+        scores: What the policies have reached that it has tried since it last told, from 0 to 1. Shape (any,).
         weights: The policy that it would give if it ended now.
     """
 
@@ -44,7 +44,7 @@ class Generation:
     weights: Array
 
 
-# Of a task, a number of episodes, a seed, and options of environments.
+# Takes a task, a number of episodes, a seed, and options of environments.
 Learner = Callable[..., Iterator[Generation]]
 
 
