@@ -19,7 +19,7 @@ PURPOSES = {
     "notebook": "[live views in notebooks](live.md#in-a-notebook)",
     "learning": "[learning](learning.md)",
     "policy": "[policies in `.onnx` files](policy_export.md#files)",
-    "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`",
+    "optimize": "`pogoptim` with `tpe`, `mapelites`, `cma_me` and `cma_mae`, and [MAP-Elites of policies](learners.md)",
 }
 
 

@@ -55,6 +55,7 @@ PAGES_WITH_COMMANDS = [
             "examples",
             "flash",
             "installing",
+            "learners",
             "learning",
             "message_log",
             "optimization",

@@ -96,7 +96,7 @@ def test_what_is_worse_is_given_up_at_once_and_what_is_better_is_kept() -> None:
         swarm.fares[0] = [0.6, 0.7]
         swarm.choose()
         assert (swarm.tried[0] == challenger).all()  # is tried on
-        swarm.fares[0] = [0.6, 0.7, 0.4, 0.7]
+        swarm.fares[0] = [0.6] * TRIALS
         swarm.choose()
     assert (swarm.known[0, 0] == challenger).all()
     assert swarm.worth[0, 0] == round(0.6 * FULL)

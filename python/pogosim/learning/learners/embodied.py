@@ -32,8 +32,8 @@ from pogosim.learning.tasks import BEACON, FULL, BenchmarkTask
 
 Array = npt.NDArray[Any]
 LARGEST = 4.0  # weight that a byte can be
-FIRST, MUTATION = 1.0, 0.4  # standard deviations of weights
-TRIALS = 4  # episodes after which weights may be the best
+FIRST, MUTATION = 1.0, 0.5  # standard deviations of weights
+TRIALS = 8  # episodes after which weights may be the best
 ARRIVAL = 0.5  # share of an episode that does not count: robots come from where they were put
 
 

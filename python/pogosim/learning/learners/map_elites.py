@@ -23,8 +23,8 @@ from pogosim.learning.tasks import BenchmarkTask, means
 
 CANDIDATES, EPISODES = 8, 4
 CELLS = (8, 8)
-FIRST = 0.5  # standard deviation of the first weights
-MUTATION, BETWEEN = 0.1, 0.2  # standard deviations: of weights, and of steps between two elites, as a share of their distance
+FIRST, MUTATION = 1.0, 0.5  # standard deviations of weights
+BETWEEN = 0.2  # that of steps towards another elite, as a share of its distance
 
 
 def map_elites(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> Iterator[Generation]:
