@@ -19,4 +19,4 @@ MODULES = {
     "Policy": "policy",
     "PolicyError": "errors",
 }
-__getattr__ = on_demand(__name__, MODULES)
+__getattr__, __dir__ = on_demand(__name__, MODULES)
