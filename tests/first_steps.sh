@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What a user does first, in the folder that this is called in: makes a project, compiles it, runs it, draws the run, opens a
-# window without a display, starts a batch. The command pogosim must be found. For machines that tests make, and for this one.
+# window without a display, starts a batch, runs a program in C++. The command pogosim must be found. For machines that tests
+# make, and for this one: gcc, g++, make and find are needed.
 set -euxo pipefail
 pogosim --version
 pogosim new first

@@ -10,12 +10,14 @@ import subprocess
 import sys
 import sysconfig
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
 import pogosim
 import pytest
 import yaml
+from pogosim.system_packages import PACKAGES
 from running import ROOT
 from schemas import mistakes
 
@@ -207,6 +209,42 @@ def test_wheels_are_tried_on_the_same_machines_on_both_forges() -> None:
     same = [job for job in on_gitlab.values() if job.get("image") == old["image"]]
     assert [job["variables"]["PYTHON"] for job in same] == [old["python"]]
     assert old["python"] in same[0]["before_script"][0]
+
+
+def installed(text: str) -> list[tuple[str, set[str]]]:
+    """Return what lines of a text install, each with the command that does."""
+    found = re.findall(r"(apt-get|dnf) install((?: -\S+)*)((?: [\w.+-]+)+)", text)
+    return [(manager, set(names.split())) for manager, _, names in found]
+
+
+def test_machines_on_which_wheels_are_tried_have_what_the_first_steps_need() -> None:
+    needed = ("gcc", "g++", "make")
+    # Debian's gcc only recommends the C library's headers; the image of AlmaLinux is without find.
+    of_debian = {*needed, "libc6-dev", "python3-venv"}
+    of_red_hat = {PACKAGES[name]["dnf install"] for name in needed} | {"findutils", "python3.12"}
+    on_github = installed("\n".join(texts(jobs(GITHUB / "workflows" / "wheels.yml")["try"])))
+    assert on_github == [("dnf", of_red_hat)]  # GitHub's own machines have all
+    for name, job in jobs(GITLAB).items():
+        if name.startswith("try_linux"):
+            assert installed("\n".join(job["before_script"])) == [("apt-get", of_debian)], name
+    assert installed("\n".join(jobs(GITLAB)["try_old_linux"]["before_script"])) == on_github
+    (bare,) = re.findall(r"--include=(\S+)", (ROOT / "tests" / "wheel" / "bare_machine.sh").read_text())
+    assert set(bare.split(",")) == of_debian | {"python3"}
+    for recipe in ("Containerfile", "pogosim.def"):
+        words = (ROOT / "containers" / recipe).read_text().split()
+        assert of_debian - {"python3-venv"} <= set(words), recipe
+
+
+def test_changes_of_what_a_wheel_is_made_of_make_and_try_wheels() -> None:
+    # The schema of YAML 1.1 reads the key "on" as a truth value.
+    patterns = yaml.safe_load((GITHUB / "workflows" / "wheels.yml").read_text())[True]["pull_request"]["paths"]
+    copied = re.findall(r"PROJECT_SOURCE_DIR}/([\w/]+)", (ROOT / "cmake" / "install.cmake").read_text())
+    steps = re.findall(r"\.\./(\w+\.sh)", (ROOT / "tests" / "wheel" / "first_steps.sh").read_text())
+    scripts = [command[0] for command in commands(GITHUB / "workflows" / "wheels.yml") if command[0][0] != "."]
+    assert len(copied) > 6
+    assert len(scripts) > 1
+    for place in [*copied, *(f"tests/{step}" for step in steps), *scripts, "python/pogosim", "pyproject.toml"]:
+        assert any(fnmatch(f"{place}/" if (ROOT / place).is_dir() else place, name) for name in patterns), place
 
 
 def test_wheels_are_published_only_after_all_tries() -> None:

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tries a wheel on this machine as a new user does, on Linux and macOS: installs it in an environment of its own, and does there
-# what ../first_steps.sh says. Needs Python (PYTHON is another one than python3), a C compiler and make, and a network for the
-# packages that the wheel requires; takes a minute; leaves nothing behind. (bare_machine.sh makes a machine to try it on.)
+# what ../first_steps.sh says. Needs Python (PYTHON is another one than python3), compilers of C and C++, make, and a network for
+# the packages that the wheel requires; takes a minute; leaves nothing behind. (bare_machine.sh makes a machine to try it on.)
 set -euo pipefail
 
 if [ $# -ne 1 ] || [ ! -f "$1" ]; then
