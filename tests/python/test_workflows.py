@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import zipfile
 from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
@@ -301,8 +302,17 @@ def checkout(tmp_path: Path) -> Path:
     git(tmp_path, "update-ref", "refs/remotes/origin/main", "HEAD")
     git(tmp_path, "tag", f"v{pogosim.__version__}")
     (tmp_path / "dist").mkdir()
-    (tmp_path / "dist" / f"pogobot_simulator-{pogosim.__version__}-py3-none-manylinux_2_28_x86_64.whl").touch()
+    put_wheel(tmp_path, f"v{pogosim.__version__}")
     return tmp_path
+
+
+def put_wheel(checkout: Path, made_of: str | None, platform: str = "manylinux_2_28_x86_64") -> None:
+    """Put a wheel into dist that says of which commit it is made, or does not."""
+    name = f"pogobot_simulator-{pogosim.__version__}-py3-none-{platform}.whl"
+    with zipfile.ZipFile(checkout / "dist" / name, "w") as wheel:
+        wheel.writestr("pogosim/__init__.py", "")
+        if made_of:
+            wheel.writestr("pogosim/simulator/lib/libpogosim.commit", f"{made_of}\n")
 
 
 def published(checkout: Path, tag: str = f"v{pogosim.__version__}") -> tuple[int, str]:
@@ -341,6 +351,39 @@ def test_only_tags_on_main_are_published(checkout: Path) -> None:
     code, message = published(checkout)
     assert code == 2
     assert f"there is no tag {tag}" in message
+
+
+def described(checkout: Path) -> str:
+    """Return what the build records of a checkout (cmake/commit.cmake)."""
+    command = ["git", "-C", str(checkout), "describe", "--always", "--tags", "--dirty"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_only_wheels_of_the_commit_of_the_tag_are_published(checkout: Path) -> None:
+    tag = f"v{pogosim.__version__}"
+    assert described(checkout) == tag
+    git(checkout, "tag", "--delete", tag)
+    first = described(checkout)  # made before the tag: its hash
+    git(checkout, "commit", "--quiet", "--allow-empty", "--message", "second")
+    second = described(checkout)
+    git(checkout, "tag", tag, first)
+    third = described(checkout)
+    assert third == f"{tag}-1-g{second}"
+    put_wheel(checkout, first, "manylinux_2_28_aarch64")
+    assert published(checkout) == (0, "")
+    for made_of in (second, third, f"{first}-dirty", f"{tag}-dirty", "unknown", None):
+        put_wheel(checkout, made_of, "manylinux_2_28_aarch64")
+        code, message = published(checkout)
+        assert code == 2
+        assert f"aarch64.whl is made of the commit {made_of or 'unknown'}, expected that of {tag}: " in message
+
+
+def test_file_that_is_no_wheel_is_not_published(checkout: Path) -> None:
+    (wheel,) = (checkout / "dist").iterdir()
+    wheel.write_text("a page of errors")
+    code, message = published(checkout)
+    assert code == 2
+    assert "the commit unknown" in message
 
 
 def test_tools_that_publish_are_pinned() -> None:
