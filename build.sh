@@ -2,6 +2,7 @@
 # Builds the library and, in place, all examples. Installs missing dependencies first.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+. scripts/bootstrap.sh
 
 usage="Usage: ./build.sh [Release|Debug]
 
@@ -11,10 +12,9 @@ Builds the library (in build/release or build/debug) and the examples (examples/
 case "$#:${1:-Release}" in
     [01]:Release | [01]:Debug) type=${1:-Release} ;;
     1:-h | 1:--help) echo "$usage" && exit 0 ;;
-    *) echo "$usage" >&2 && exit 2 ;;
+    *) refuse "'$*': expected nothing, Release or Debug" ;;
 esac
 
-. scripts/bootstrap.sh
 bootstrap build
 
 folder=build/$(printf %s "$type" | tr '[:upper:]' '[:lower:]')

@@ -2,17 +2,15 @@
 # One minute of a swarm: builds the project, runs the hanabi example without a window, and draws the run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+. scripts/bootstrap.sh
 
-if [ "$#" -ne 0 ]; then
-    echo "Usage: ./demo.sh    (no arguments; leaves results/demo/data.feather and results/demo/swarm.png)" >&2
-    case $1 in
-        -h | --help) exit 0 ;;
-        *) exit 2 ;;
-    esac
-fi
+case "$#:${1:-}" in
+    0:) ;;
+    1:-h | 1:--help) echo "Usage: ./demo.sh    (leaves results/demo/data.feather and results/demo/swarm.png)" && exit 0 ;;
+    *) refuse "'$*': expected no arguments" ;;
+esac
 
 ./build.sh Release
-. scripts/bootstrap.sh
 
 data=results/demo/data.feather
 picture=results/demo/swarm.png

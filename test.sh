@@ -2,6 +2,7 @@
 # Runs all tests. Installs missing dependencies first. The last line counts tests and checks: "N passed, N failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+. scripts/bootstrap.sh
 
 usage="Usage: ./test.sh [--quick | --style] [--tidy]
 
@@ -22,12 +23,11 @@ for argument in "$@"; do
         --style) style=yes ;;
         --tidy) needs=tidy ;;
         -h | --help) echo "$usage" && exit 0 ;;
-        *) echo "$usage" >&2 && exit 2 ;;
+        *) refuse "unknown argument '$argument', expected --quick, --style or --tidy" ;;
     esac
 done
-[ "$quick$style" != yesyes ] || { echo "$usage" >&2 && exit 2; }
+[ "$quick$style" != yesyes ] || refuse "--quick and --style: expected one of them"
 
-. scripts/bootstrap.sh
 bootstrap "$needs"
 # Modules are compiled once for all the processes that tests start, also where the environment keeps Python from it.
 unset PYTHONDONTWRITEBYTECODE

@@ -33,6 +33,12 @@ unset PYTHONPATH PYTHONHOME VIRTUAL_ENV PIP_USER PIP_TARGET PIP_PREFIX PIP_REQUI
 
 say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
 
+# refuse WHAT: says in one line what is wrong with the arguments, and exits.
+refuse() {
+    printf '%s: %s (--help says more)\n' "${0##*/}" "$1" >&2
+    exit 2
+}
+
 # fail WHAT HINT: prints one line and exits.
 fail() {
     printf '%s: failed: %s. %s\n' "${0##*/}" "$1" "$2" >&2

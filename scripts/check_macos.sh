@@ -2,6 +2,7 @@
 # Builds the simulator for macOS on Debian, with the compiler zig, and looks at what comes out. Nothing of it can be run here.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/bootstrap.sh
 
 usage="Usage: scripts/check_macos.sh [arm64 | x86_64]...
 
@@ -12,10 +13,9 @@ Builds in build/cross; the first time takes long."
 case "${1:-}" in -h | --help) echo "$usage" && exit 0 ;; esac
 [ $# -gt 0 ] || set -- arm64 x86_64
 for processor in "$@"; do
-    case $processor in arm64 | x86_64) ;; *) echo "$usage" >&2 && exit 2 ;; esac
+    case $processor in arm64 | x86_64) ;; *) refuse "unknown kind of Macs '$processor', expected arm64 or x86_64" ;; esac
 done
 
-. scripts/bootstrap.sh
 install_packages wheel
 make_wheel_environment
 python=build/wheel-environment/bin/python

@@ -3,6 +3,7 @@
 set -euo pipefail
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/bootstrap.sh
 
 usage="Usage: scripts/make_wheel.sh [--for MACHINE | --here] [FOLDER]
 
@@ -15,8 +16,7 @@ FOLDER (dist).
   -h, --help      print this help
 Without either, for Linux on processors like this one's."
 
-fail_usage() { echo "$usage" >&2 && exit 2; }
-
+targets="linux-x86_64, linux-aarch64, macos-arm64 or macos-x86_64"
 folder=dist
 way=(--for "linux-$(uname -m)")
 while [ $# -gt 0 ]; do
@@ -24,19 +24,29 @@ while [ $# -gt 0 ]; do
         -h | --help) echo "$usage" && exit 0 ;;
         --here) way=(--here) ;;
         --for)
-            case ${2:-} in linux-x86_64 | linux-aarch64 | macos-arm64 | macos-x86_64) ;; *) fail_usage ;; esac
+            [ -n "${2:-}" ] || refuse "--for: expected a machine after it: $targets"
+            case $2 in
+                linux-x86_64 | linux-aarch64 | macos-arm64 | macos-x86_64) ;;
+                *) refuse "--for: unknown machine '$2', expected $targets" ;;
+            esac
             way=(--for "$2") && shift
             ;;
-        -* | "") fail_usage ;;
+        -*) refuse "unknown option '$1', expected --for or --here" ;;
+        "") refuse "the folder for the wheel is empty" ;;
         *)
-            [ $# -eq 1 ] || fail_usage
+            [ $# -eq 1 ] || refuse "'$2' after the folder '$1', expected the folder last"
             case $1 in /*) folder=$1 ;; *) folder=$here/$1 ;; esac
             ;;
     esac
     shift
 done
 
-. scripts/bootstrap.sh
+# The wheel says what it is made of: libpogosim.commit.
+case $([ ! -e .git ] || git describe --always --tags --dirty 2>/dev/null) in
+    *-dirty)
+        echo "${0##*/}: warning: this checkout has uncommitted changes: the wheel cannot be reproduced, and .ci/publish refuses it" >&2
+        ;;
+esac
 install_packages wheel
 make_wheel_environment
 say "Building the simulator (takes ten minutes on two processors)"

@@ -2,6 +2,7 @@
 # Builds the documentation as a site, build/site: open build/site/index.html. Installs what it needs first.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/bootstrap.sh
 
 usage="Usage: scripts/site.sh
 
@@ -12,10 +13,9 @@ without a server. Exit code 1 if a link leads nowhere or a page is missing in mk
 case "$#:${1:-}" in
     0:) ;;
     1:-h | 1:--help) echo "$usage" && exit 0 ;;
-    *) echo "$usage" >&2 && exit 2 ;;
+    *) refuse "'$*': expected no arguments" ;;
 esac
 
-. scripts/bootstrap.sh
 bootstrap test
 
 # Said at every start: what will replace MkDocs. With --quiet, --strict would not see warnings.

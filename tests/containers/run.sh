@@ -11,10 +11,8 @@ without network; loads modules/pogosim.tcl with both programs that read it; and 
 this machine's processor (./scripts/make_wheel.sh leaves it in dist). Needs Debian's mirrors and PyPI. Takes about 15 minutes;
 leaves nothing behind."
 
-refuse() { echo "run.sh: $1" >&2 && exit 2; }
-
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
-[ $# -eq 1 ] || { echo "$usage" >&2 && exit 2; }
+[ $# -eq 1 ] || refuse "expected one argument, the wheel, found $# (--help says more)"
 [ -f "$1" ] || refuse "there is no file $1"
 case ${1##*/} in
     pogobot_simulator-*_"$(uname -m)".whl) ;;

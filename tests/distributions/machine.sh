@@ -1,5 +1,6 @@
 # Makes bare machines, for scripts that source this file: a fresh distribution in a folder, with nothing installed.
 #
+#   refuse WHAT                          # says in one line what is wrong with the arguments or the machine, and exits
 #   describe NAME                        # sets suite, script and components of a name of table.txt; fails if there is none
 #   make_machine FOLDER LOG [OPTIONS]    # makes it in an empty folder, by debootstrap, with more options for that
 #   let_reach_the_network FOLDER         # the machine gets what this one needs for that
@@ -7,6 +8,11 @@
 
 table=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/table.txt
 names=$(awk '!/^#/ { print "  " $1 }' "$table")
+
+refuse() {
+    echo "${0##*/}: $1" >&2
+    exit 2
+}
 
 describe() {
     read -r suite script components < <(awk -v name="$1" '$1 == name && !/^#/ { print $2, $3, $4 }' "$table")

@@ -13,8 +13,6 @@ project of the template, and ./test.sh --quick. Only the machine as it was befor
 Names, of tests/distributions/table.txt:
 $names"
 
-refuse() { echo "run.sh: $1" >&2 && exit 2; }
-
 name=""
 tests=yes
 roots=/var/cache/pogosim
@@ -35,7 +33,7 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-[ -n "$name" ] || { echo "$usage" >&2 && exit 2; }
+[ -n "$name" ] || refuse "no name of a distribution (--help says more); expected one of:"$'\n'"$names"
 describe "$name" || refuse "unknown distribution \"$name\"; expected one of:"$'\n'"$names"
 [ "$(id -u)" -eq 0 ] || refuse "only root can make machines: sudo tests/distributions/run.sh $name"
 command -v debootstrap >/dev/null || refuse "debootstrap is not installed: sudo apt install debootstrap"

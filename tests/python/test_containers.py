@@ -166,11 +166,8 @@ def test_options_of_batches_in_jobs_exist() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL"),
-        (
-            ["a.whl", "b.whl"],
-            "Usage, as root, with buildah, podman, runc and debootstrap installed: tests/containers/run.sh WHEEL",
-        ),
+        ([], "run.sh: expected one argument, the wheel, found 0"),
+        (["a.whl", "b.whl"], "run.sh: expected one argument, the wheel, found 2"),
         (["missing.whl"], "run.sh: there is no file missing.whl"),
         (["pyproject.toml"], "run.sh: pyproject.toml is no wheel of Pogosim for this machine, by its name; expected "),
     ],

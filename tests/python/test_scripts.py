@@ -1,7 +1,8 @@
-"""Benchmarks and scripts say in argparse's words what is wrong with their arguments, and which package is missing."""
+"""Benchmarks and scripts say what is wrong with their arguments, and which package is missing."""
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -82,6 +83,71 @@ def test_missing_package_is_one_line_with_the_remedy(script: Path, tmp_path: Pat
     assert code == (0 if needs_none else 2)
     assert len(lines) == (0 if needs_none else 1)
     assert needs_none or (lines[0].startswith(f"{script.name}: ") and ".venv/bin/python" in lines[0])
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("build.sh debug", "'debug': expected nothing, Release or Debug"),
+        ("demo.sh all", "'all': expected no arguments"),
+        ("test.sh --fast", "unknown argument '--fast', expected --quick, --style or --tidy"),
+        ("test.sh --quick --style", "--quick and --style: expected one of them"),
+        ("scripts/site.sh folder", "'folder': expected no arguments"),
+        ("scripts/check_macos.sh m1", "unknown kind of Macs 'm1', expected arm64 or x86_64"),
+        (
+            "scripts/make_wheel.sh --for windows",
+            "--for: unknown machine 'windows', expected linux-x86_64, linux-aarch64, ",
+        ),
+        ("scripts/make_wheel.sh --for", "--for: expected a machine after it: linux-x86_64, linux-aarch64, "),
+        ("scripts/make_wheel.sh --to windows", "unknown option '--to', expected --for or --here"),
+        ("scripts/make_wheel.sh wheels --here", "'--here' after the folder 'wheels', expected the folder last"),
+        (".ci/publish v1.2.3", "expected vVERSION and the folder of the wheels, found 1"),
+        ("tests/containers/run.sh", "expected one argument, the wheel, found 0"),
+        ("tests/wheel/bare_machine.sh", "expected a wheel, or a wheel and a distribution, found 0"),
+        ("tests/wheel/first_steps.sh", "expected one argument, the wheel, found 0"),
+        ("tests/wheel/first_steps.sh no.whl", "there is no file 'no.whl'"),
+        ("tests/slurm/one_node.sh", "no command, expected one and its arguments"),
+    ],
+)
+def test_wrong_argument_of_a_shell_script_is_one_line(words: str, message: str, tmp_path: Path) -> None:
+    script, *arguments = words.split()
+    command = [str(ROOT / script), *arguments]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"{Path(script).name}: {message}")
+
+
+@pytest.mark.parametrize("script", ["build.sh", "demo.sh", "test.sh", "scripts/site.sh", "scripts/make_wheel.sh"])
+def test_help_of_a_shell_script_is_printed(script: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [ROOT / script, "--help"], cwd=tmp_path, capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stderr == ""
+    assert done.stdout.startswith(f"Usage: {'' if '/' in script else './'}{script}")
+
+
+def test_wheel_of_uncommitted_changes_is_warned_of(tmp_path: Path) -> None:
+    (tmp_path / "scripts").mkdir()
+    shutil.copy(ROOT / "scripts" / "make_wheel.sh", tmp_path / "scripts")
+    (tmp_path / "scripts" / "bootstrap.sh").write_text(
+        "install_packages() { :; }\nmake_wheel_environment() { :; }\nsay() { :; }\nfail() { exit 1; }\n"
+    )
+    (python := tmp_path / "build" / "wheel-environment" / "bin" / "python").parent.mkdir(parents=True)
+    python.symlink_to(shutil.which("true") or "")
+
+    def errors() -> str:
+        command = [tmp_path / "scripts" / "make_wheel.sh"]
+        return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stderr
+
+    assert errors() == ""  # sources of an archive
+    identity = ["-c", "user.name=Tester", "-c", "user.email=tester@example.org"]
+    for words in (["init", "--quiet"], ["add", "scripts"], [*identity, "commit", "--quiet", "--message", "first"]):
+        subprocess.run(["git", "-C", str(tmp_path), *words], check=True)
+    assert errors() == ""
+    with (tmp_path / "scripts" / "bootstrap.sh").open("a") as file:
+        file.write("\n")
+    assert errors().startswith("make_wheel.sh: warning: this checkout has uncommitted changes: ")
 
 
 def test_report_of_tests_that_cannot_be_read_is_one_line(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@
 set -euo pipefail
 
 if [ $# -eq 0 ]; then
-    echo "Usage: ${0##*/} COMMAND [ARGUMENTS...]" >&2
+    echo "${0##*/}: no command, expected one and its arguments: ${0##*/} sbatch --wait --wrap hostname" >&2
     exit 2
 fi
 PATH=$PATH:/usr/sbin:/sbin

@@ -11,10 +11,8 @@ NAME (debian-12) is one of tests/distributions/table.txt with Python 3.10 or lat
 that, which this one must be able to run: on x86-64, install qemu-user-static and binfmt-support. Takes a few minutes, more on
 an emulated processor; leaves nothing behind."
 
-refuse() { echo "bare_machine.sh: $1" >&2 && exit 2; }
-
 case ${1:-} in -h | --help) echo "$usage" && exit 0 ;; esac
-[ $# -eq 1 ] || [ $# -eq 2 ] || { echo "$usage" >&2 && exit 2; }
+[ $# -eq 1 ] || [ $# -eq 2 ] || refuse "expected a wheel, or a wheel and a distribution, found $# arguments (--help says more)"
 [ -f "$1" ] || refuse "there is no file $1"
 wheel=$(realpath "$1")
 name=${2:-debian-12}

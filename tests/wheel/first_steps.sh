@@ -4,10 +4,10 @@
 # the packages that the wheel requires; takes a minute; leaves nothing behind. (bare_machine.sh makes a machine to try it on.)
 set -euo pipefail
 
-if [ $# -ne 1 ] || [ ! -f "$1" ]; then
-    echo "Usage: tests/wheel/first_steps.sh WHEEL" >&2
-    exit 2
-fi
+refuse() { echo "first_steps.sh: $1: tests/wheel/first_steps.sh WHEEL" >&2 && exit 2; }
+
+[ $# -eq 1 ] || refuse "expected one argument, the wheel, found $#"
+[ -f "$1" ] || refuse "there is no file '$1'"
 
 wheel=$(cd "$(dirname "$1")" && pwd)/${1##*/}
 steps=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/first_steps.sh
