@@ -19,7 +19,6 @@ done
 install_packages wheel
 make_wheel_environment
 python=build/wheel-environment/bin/python
-export PYTHONPATH=scripts
 for processor in "$@"; do
     target=macos-$processor
     folder=$PWD/build/cross/$target
@@ -30,7 +29,7 @@ for processor in "$@"; do
     simulator=$folder/site-packages/pogosim/simulator
     cp -r template_prj "$folder/template"
     make -s -C "$folder/template" sim "POGOSIM_DIR=$simulator" "CC=$folder/tools/cc" "CXX=$folder/tools/c++"
-    "$python" -m cross.check_mach_o "$target" "$folder/template/template" "$folder/template/template.so" \
+    "$python" scripts/cross/check_mach_o.py "$target" "$folder/template/template" "$folder/template/template.so" \
         --with "$simulator/lib/libpogosim.dylib"
     echo "macOS on $processor: built, and its files are as expected; not run, since this is no Mac"
 done

@@ -1,6 +1,6 @@
 """Looks at files that were built for macOS, of which none can be run on Linux.
 
-    PYTHONPATH=scripts python -m cross.check_mach_o macos-arm64 FILES --with LIBRARIES
+    python scripts/cross/check_mach_o.py macos-arm64 FILES --with LIBRARIES
 
 Each file must be for the processor and the version of macOS, and for arm64 signed. The libraries that it names must be
 there, or the system's; what it takes from our libraries must be in them; and names of our C++ must not be shown.
@@ -11,9 +11,12 @@ from __future__ import annotations
 
 import argparse
 import struct
+import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+if not __package__:  # called by its path
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from cross.mach_o import PROCESSORS, MachO, read
 from cross.system_libcpp import LIBRARY as LIBCPP
 
@@ -89,7 +92,11 @@ def check(target: str, files: Iterable[Path], libraries: Iterable[Path], movable
 
 def main() -> None:
     """Run the command line."""
-    parser = argparse.ArgumentParser(description="Looks at files that were built for macOS.")
+    parser = argparse.ArgumentParser(
+        description="Says of files that were built for macOS whether a Mac would load them: processor, version, "
+        "signature, libraries and symbols. Exit code 1 if not.",
+        epilog="example: python scripts/cross/check_mach_o.py macos-arm64 first/first --with lib/libpogosim.dylib",
+    )
     parser.add_argument("target", choices=PROCESSORS, help="the machine")
     parser.add_argument(
         "--with", dest="libraries", type=Path, nargs="*", default=[], help="libraries that they may need"

@@ -1,6 +1,6 @@
 """Builds the libraries that the simulator is made of for another machine, in build/cross/TARGET.
 
-    PYTHONPATH=scripts python -m cross.dependencies linux-aarch64
+    python scripts/cross/dependencies.py linux-aarch64
 
 Their sources are Debian's, of the release that the simulator is tested on, whatever this machine runs: apt-get fetches
 them, with settings of their own in build/cross/apt, so the system's stay as they are. SDL and Apache Arrow come from
@@ -22,6 +22,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
+if not __package__:  # called by its path
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from cross.old_libraries import make_old_libraries
 from cross.system_libcpp import STUB, write_stub
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from running import ROOT
 
+CHECK = ROOT / "scripts" / "cross" / "check_mach_o.py"
 ARM64, X86_64 = 0x0100000C, 0x01000007
 LIBCPP = "/usr/lib/libc++.1.dylib"
 SYSTEM = "/usr/lib/libSystem.B.dylib"
@@ -80,7 +81,7 @@ def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
 
 def said_of(*words: str | Path) -> str:
     """Return what check_mach_o says of a file, without its path; all must be as its exit code says."""
-    result = run("-m", "cross.check_mach_o", "macos-arm64", *words)
+    result = run(CHECK, "macos-arm64", *words)
     assert result.stderr == ""
     (line,) = result.stdout.splitlines()
     said = line.partition(": ")[2]
@@ -139,7 +140,7 @@ def test_of_many_problems_the_first_are_said(tmp_path: Path) -> None:
 def test_files_for_others_are_refused_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "short").write_bytes(b"\xcf\xfa")
     for file in (written(tmp_path / "x86", processor=X86_64), Path(sys.executable), tmp_path / "short"):
-        result = run("-m", "cross.check_mach_o", "macos-arm64", file)
+        result = run(CHECK, "macos-arm64", file)
         assert result.returncode == 1
         assert result.stderr.startswith(f"check_mach_o.py: {file}: ")
         assert result.stderr.count("\n") == 1

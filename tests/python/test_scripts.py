@@ -13,6 +13,7 @@ from running import ROOT
 BENCHMARKS = sorted(path for path in (ROOT / "bench").glob("*.py") if path.name != "options.py")
 FIGURES = [ROOT / "docs" / "figures" / f"{name}.py" for name in ("all", "first_program", "tune", "validate")]
 SCRIPTS = [ROOT / "scripts" / f"{name}.py" for name in ("count_tests", "draw_arenas", "make_wheel")]
+SCRIPTS += [ROOT / "scripts" / "cross" / f"{name}.py" for name in ("check_mach_o", "dependencies", "old_libraries")]
 TRAIN = ROOT / "examples" / "learning" / "train.py"
 LEARN = ROOT / "examples" / "policy" / "learn.py"
 ALL = [*BENCHMARKS, *FIGURES, *SCRIPTS, TRAIN, LEARN]
