@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pogosim
@@ -29,11 +30,13 @@ def test_citation_names_version_licence_and_authors_of_the_project() -> None:
     project = (ROOT / "pyproject.toml").read_text()
     assert citation["version"] == pogosim.__version__
     assert f'license = "{citation["license"]}"' in project
+    (keywords,) = re.findall(r"^keywords = (\[.*?\])$", project, re.MULTILINE | re.DOTALL)
+    assert yaml.safe_load(keywords) == citation["keywords"]
     assert f'authors = [{{ name = "{citation["authors"][0]["name"]}" }}]' in project
 
 
 def test_citation_refers_to_the_article_as_the_readme_does() -> None:
-    (article,) = yaml.safe_load(CITATION.read_text())["references"]
+    article = yaml.safe_load(CITATION.read_text())["preferred-citation"]
     readme = (ROOT / "README.md").read_text()
     assert article["title"] in readme
     assert all(author["family-names"] in readme for author in article["authors"])
