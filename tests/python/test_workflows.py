@@ -239,7 +239,7 @@ def test_machines_on_which_wheels_are_tried_have_what_the_first_steps_need() -> 
 def test_changes_of_what_a_wheel_is_made_of_make_and_try_wheels() -> None:
     # The schema of YAML 1.1 reads the key "on" as a truth value.
     patterns = yaml.safe_load((GITHUB / "workflows" / "wheels.yml").read_text())[True]["pull_request"]["paths"]
-    copied = re.findall(r"PROJECT_SOURCE_DIR}/([\w/]+)", (ROOT / "cmake" / "install.cmake").read_text())
+    copied = re.findall(r"PROJECT_SOURCE_DIR}/([\w/.]+)", (ROOT / "cmake" / "install.cmake").read_text())
     steps = re.findall(r"\.\./(\w+\.sh)", (ROOT / "tests" / "wheel" / "first_steps.sh").read_text())
     scripts = [command[0] for command in commands(GITHUB / "workflows" / "wheels.yml") if command[0][0] != "."]
     assert len(copied) > 6
