@@ -16,7 +16,7 @@
 // Inputs and outputs are whole numbers. No sum or product leaves its type, whatever the inputs are. Their scales are at
 // their names, below.
 #ifndef POLICY_H
-#define POLICY_H
+#define POLICY_H 0x004d2ee9
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -221,4 +221,6 @@ static inline bool policy_self_test(void) {
     return true;
 }
 // clang-format on
+#elif POLICY_H != 0x004d2ee9
+#error "another policy named policy is included: export one of them with another --name"
 #endif

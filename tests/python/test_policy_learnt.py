@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pogosim
 import pytest
 from in_process import pogosim as command
 from pogosim.policy import Dense, Policy, network_of
 from pogosim.policy.choices import NUMBERS
+from pogosim.policy.errors import PolicyError
 from pogosim.policy.npz_file import OF_LAYER, SCALING
 from running import ROOT
 from swarm_envs import hosted_env
@@ -62,7 +65,58 @@ def test_exported_policy_acts_as_in_the_environment(numbers: str, tmp_path: Path
     assert 0.1 < (abs(acted) == 1023).mean() < 0.9
 
 
+def test_time_between_decisions_goes_with_a_policy(tmp_path: Path) -> None:
+    with hosted_env(decision_s=0.25) as env:
+        arrays = env.policy_arrays()
+        units = len(env.inputs)
+        Policy(network_of([Dense(np.ones((2, units)), np.zeros(2), "hardtanh")], **arrays)).save(
+            tmp_path / "policy.npz"
+        )
+    assert Policy.load(tmp_path / "policy.npz").network.decision_s == 0.25
+    command(tmp_path, "export-policy", "policy.npz", "-o", "policy.h", "--no-cycles")
+    header = (tmp_path / "policy.h").read_text()
+    assert "#define POLICY_DECISION_MS 250 " in header
+    assert "Call policy_step() every 0.25 s" in " ".join(header.replace("//", "").split())
+    with (
+        hosted_env(decision_s=0.1) as env,
+        pytest.raises(pogosim.ConfigurationError, match=r"decides every 0.25 s, and the environment every 0.1 s"),
+    ):
+        env.check_policy(tmp_path / "policy.npz")
+
+
+@pytest.mark.parametrize("decision_s", [0.0, -1.0, np.inf, [0.1, 0.2], "0.1", True])
+def test_wrong_times_between_decisions_are_refused(decision_s: Any) -> None:
+    with pytest.raises(PolicyError, match="decision_s: expected a time in seconds above 0"):
+        network_of([Dense(np.ones((1, 1)), np.zeros(1), "tanh")], decision_s=decision_s)
+
+
+def test_two_policies_of_one_name_do_not_compile_together(tmp_path: Path) -> None:
+    for name, weight in (("one", 1.0), ("two", 2.0)):
+        Policy(network_of([Dense(np.full((1, 1), weight), np.zeros(1), "tanh")])).save(tmp_path / f"{name}.npz")
+        assert command(tmp_path, "export-policy", f"{name}.npz", "-o", f"{name}.h", "--no-cycles").code == 0
+    for first, second, said in (("one", "one", ""), ("one", "two", "another policy named policy is included")):
+        (tmp_path / "main.c").write_text(
+            f'#include "{first}.h"\n#include "{second}.h"\nint main(void) {{ return !policy_self_test(); }}\n'
+        )
+        compiler = ["cc", "-Wall", "-Wno-unused", "main.c", "-o", "main"]
+        done = subprocess.run(compiler, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode == 0) == (said == "")
+        assert said in done.stderr
+
+
+@pytest.mark.parametrize("name", ["float.h", "math.h", "pogobase.h"])
+def test_a_policy_does_not_take_the_name_of_a_header_of_c_or_of_robots(name: str, tmp_path: Path) -> None:
+    Policy(network_of([Dense(np.ones((1, 1)), np.zeros(1), "tanh")])).save(tmp_path / "policy.npz")
+    result = command(tmp_path, "export-policy", "policy.npz", "-o", name, "--no-cycles")
+    assert result.code == 2
+    said = f"{name} would hide the header <{name}> of C or robots; choose another name"
+    assert result.errors == f"pogosim export-policy: {said}\n"
+    assert not (tmp_path / name).exists()
+
+
 def test_page_has_all_arrays_of_a_file() -> None:
-    rows = re.findall(r"^\| (`(?:layer0|input|output)_.*?) \|", (ROOT / "docs" / "policy_export.md").read_text(), re.M)
+    rows = re.findall(
+        r"^\| (`(?:layer0|input|output|decision)_.*?) \|", (ROOT / "docs" / "policy_export.md").read_text(), re.M
+    )
     named = re.findall(r"`(\w+)`", "".join(rows))
     assert sorted(named) == sorted([*(f"layer0_{part}" for part in OF_LAYER), *SCALING])

@@ -26,6 +26,11 @@ array of shape (..., inputs), or a data file with a column for each input. Input
 well."""
 MEMORY_BYTES = 128 * 1024  # of a robot, for program, variables and stack
 
+# Headers that programs include by <...>, where -I. may lead to this one: those of C, and those of robots.
+OF_OTHERS = """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
+stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
+pogobase pogobot"""
+
 
 def parser(prog: str) -> Parser:
     """Return the command line."""
@@ -58,6 +63,8 @@ def checked_header(options: argparse.Namespace) -> Path:
         OSError: It cannot be looked at.
     """
     output = checked_output(options.output, options.policy, ["h"])
+    if output.stem in OF_OTHERS.split():
+        raise OutputError(f"{options.output} would hide the header <{output.name}> of C or robots; choose another name")
     for given in (options.calibration, options.scaling):
         if given is not None and leads_to(output, given):
             raise OutputError(f"{options.output} would take the place of {given}; name another output")

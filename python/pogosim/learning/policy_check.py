@@ -29,8 +29,8 @@ def name_in_c(feature: str) -> str:
     return re.sub(r"\W+", "_", feature).strip("_")
 
 
-def policy_arrays(observation: Scaling, actions: Scaling) -> Arrays:
-    """Return the arrays that say what the numbers of a policy are."""
+def policy_arrays(observation: Scaling, actions: Scaling, decision_s: float) -> Arrays:
+    """Return the arrays that say what the numbers of a policy are, and how far apart its decisions."""
     return {
         "input_names": np.array([name_in_c(name) for name in observation.features]),
         "output_names": np.array([name_in_c(name) for name in actions.features]),
@@ -40,6 +40,7 @@ def policy_arrays(observation: Scaling, actions: Scaling) -> Arrays:
         "input_high": observation.own_high,
         "output_offset": actions.middle,
         "output_scale": actions.half,
+        "decision_s": np.array(decision_s),
     }
 
 
@@ -114,4 +115,9 @@ def check_policy(policy: Any, arrays: Arrays) -> Mapping[str, Any]:
                 f"{what} is for other ranges: its {name} is {shown(np.asarray(found[name]).tolist())}, and that "
                 f"of the environment {shown(arrays[name].tolist())}"
             )
+    if "decision_s" in found and not is_close(found["decision_s"], arrays["decision_s"], 0.0):
+        raise ConfigurationError(
+            f"{what} decides every {shown(np.asarray(found['decision_s']).tolist())} s, and the environment every "
+            f"{arrays['decision_s']:.6g} s (decision_s)"
+        )
     return found

@@ -494,7 +494,7 @@ class SwarmEnv:
 
         To save them with a policy: Policy(network_of(layers, **env.policy_arrays())).save("policy.npz").
         """
-        return policy_arrays(self._task.scaling, self._task.actions.scaling)
+        return policy_arrays(self._task.scaling, self._task.actions.scaling, self.decision_s)
 
     def check_policy(self, policy: PathLike | Mapping[str, Any]) -> Mapping[str, Any]:
         """Check that a policy is for this observation and these actions, and return its arrays by their names.

@@ -6,10 +6,17 @@ C99 and later, C++ as well; no memory is allocated, and no C library is needed b
 from __future__ import annotations
 
 import re
+import zlib
 from dataclasses import dataclass
 
 from pogosim.policy.c_forms import form_of
-from pogosim.policy.c_introduction import comments_of_inputs, comments_of_outputs, enumeration, introduction
+from pogosim.policy.c_introduction import (
+    comments_of_inputs,
+    comments_of_outputs,
+    decision_time,
+    enumeration,
+    introduction,
+)
 from pogosim.policy.c_self_test import self_test
 from pogosim.policy.c_step import functions_of, state_type, step_of
 from pogosim.policy.c_text import Array
@@ -18,6 +25,7 @@ from pogosim.policy.example_steps import ExampleSteps
 from pogosim.policy.network import NAME, Dense, Network
 from pogosim.policy.policy import Policy
 
+GUARD = "@content@"  # stands for a number that tells headers of one name apart
 MOST_WEIGHTS = 1 << 18  # several times as many as a robot has memory for
 
 
@@ -96,7 +104,7 @@ def header_of(policy: Policy, examples: ExampleSteps, prefix: str, source: str) 
     lines = [
         *introduction(policy, prefix, re.sub(r"[^\w. -]", "_", source)),
         f"#ifndef {prefix.upper()}_H",
-        f"#define {prefix.upper()}_H",
+        f"#define {prefix.upper()}_H {GUARD}",
         "#include <stdbool.h>",
         "#include <stdint.h>",
         "#include <string.h>",
@@ -109,6 +117,7 @@ def header_of(policy: Policy, examples: ExampleSteps, prefix: str, source: str) 
         "",
         f"#define @@CONSTANT_BYTES {constant_bytes}  // weights, biases, tables and test vector",
         f"#define @@STATE_BYTES {step.state.size}  // of each robot, in USERDATA",
+        *decision_time(policy),
         f"#define @@STACK_BYTES {step.local.size}  // arrays of a step",
         f"#define @@MULTIPLICATIONS {step.multiplications}  // of a step, at most",
         "",
@@ -128,11 +137,15 @@ def header_of(policy: Policy, examples: ExampleSteps, prefix: str, source: str) 
         "",
         *self_test(policy, examples),
         "// clang-format on",
+        f"#elif {prefix.upper()}_H != {GUARD}",
+        f'#error "another policy named {prefix} is included: export one of them with another --name"',
         "#endif",
         "",
     ]
     text = "\n".join(line.rstrip() for line in lines)
     for name in ("weight", "number", "sum"):
         text = text.replace(f"@{name}_t", form.types[name])
+    content = text.partition("#ifndef")[2]
+    text = text.replace(GUARD, f"0x{zlib.crc32(content.encode()):08x}")
     text = text.replace("@@", f"{prefix.upper()}_").replace("@", f"{prefix}_")
     return Header(text, constant_bytes, step.state.size, step.local.size, step.multiplications)

@@ -30,6 +30,11 @@ def introduction(policy: Policy, prefix: str, source: str) -> list[str]:
         if policy.fixed is None
         else "Inputs and outputs are whole numbers. No sum or product leaves its type, whatever the inputs are."
     )
+    if not np.isnan(network.decision_s):
+        note += (
+            f" Call {prefix}_step() every {network.decision_s:.6g} s ({upper}_DECISION_MS, in milliseconds): its "
+            "decisions were that far apart in training."
+        )
     return [
         *(f"// {line}" for line in textwrap.wrap(text, WIDTH - 3)),
         "//",
@@ -58,6 +63,14 @@ def introduction(policy: Policy, prefix: str, source: str) -> list[str]:
         "//",
         *(f"// {line}" for line in textwrap.wrap(f"{note} Their scales are at their names, below.", WIDTH - 3)),
     ]
+
+
+def decision_time(policy: Policy) -> list[str]:
+    """Return the time between decisions as a constant; nothing if it is unknown."""
+    decision_s = policy.network.decision_s
+    if np.isnan(decision_s):
+        return []
+    return [f"#define @@DECISION_MS {round(1000 * decision_s)}  // from one decision to the next, in training"]
 
 
 def enumeration(names: tuple[str, ...], what: str, comments: list[str]) -> list[str]:

@@ -158,6 +158,7 @@ class Network:
         output_offset: Shape (outputs,).
         input_range: Least and greatest value of each input, in its unit, to which it is cut; NaN where they are
             unknown. Shape (inputs, 2).
+        decision_s: Simulated seconds from one call to the next, as it was trained; NaN: unknown.
     """
 
     layers: tuple[Layer, ...]
@@ -168,6 +169,7 @@ class Network:
     output_scale: Floats
     output_offset: Floats
     input_range: Floats = field(repr=False)
+    decision_s: float = np.nan
 
     @property
     def inputs(self) -> int:
@@ -223,6 +225,7 @@ def network_of(
     output_offset: npt.ArrayLike = 0.0,
     input_low: npt.ArrayLike = np.nan,
     input_high: npt.ArrayLike = np.nan,
+    decision_s: npt.ArrayLike = np.nan,
     place: str = "the policy",
 ) -> Network:
     """Make a policy of its layers, and check it.
@@ -237,6 +240,7 @@ def network_of(
         output_offset: Offset of each output, or one for all.
         input_low: Least value of each input, or one for all; NaN: unknown.
         input_high: Greatest value, likewise.
+        decision_s: Time from one decision to the next, in seconds, above 0; NaN: unknown.
         place: Where the policy is from, for messages.
 
     Raises:
@@ -262,7 +266,20 @@ def network_of(
         vector(output_scale, outputs, f"{place}: output_scale"),
         vector(output_offset, outputs, f"{place}: output_offset"),
         checked_range(input_low, input_high, inputs, place),
+        checked_decision(decision_s, place),
     )
+
+
+def checked_decision(decision_s: npt.ArrayLike, place: str) -> float:
+    """Return the time between decisions, in seconds; NaN if it is unknown.
+
+    Raises:
+        PolicyError: It is no such time.
+    """
+    found = np.asarray(decision_s)
+    if found.size != 1 or found.dtype.kind not in "iuf" or not (np.isnan(found) or 0 < found < np.inf).all():
+        raise PolicyError(f"{place}: decision_s: expected a time in seconds above 0, found {decision_s!r}")
+    return float(found.reshape(()))
 
 
 def checked_layer(layer: Layer, before: int | None, place: str) -> Layer:

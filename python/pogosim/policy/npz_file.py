@@ -25,7 +25,7 @@ from pogosim.policy.network import KINDS, Layer, Network, network_of
 
 OF_LAYER = ("weights", "bias", "activation", "kind", "recurrent_weights", "recurrent_bias")
 NUMBERS = ("input_offset", "input_scale", "output_scale", "output_offset", "input_low", "input_high")
-SCALING = ("input_names", "output_names", *NUMBERS)
+SCALING = ("input_names", "output_names", *NUMBERS, "decision_s")
 # What NumPy raises for files that are damaged, or no archives of arrays.
 WRONG_FILE = (
     ValueError,  # also of texts that are not UTF-8
@@ -89,7 +89,7 @@ def texts(array: npt.NDArray[Any], place: str) -> tuple[str, ...]:
 
 def scaling_in(arrays: Mapping[str, npt.NDArray[Any]], place: str) -> dict[str, Any]:
     """Return the arguments of network_of() that say how inputs and outputs are scaled."""
-    found: dict[str, Any] = {name: arrays[name] for name in NUMBERS if name in arrays}
+    found: dict[str, Any] = {name: arrays[name] for name in (*NUMBERS, "decision_s") if name in arrays}
     for name in ("input_names", "output_names"):
         if name in arrays:
             found[name] = texts(arrays[name], f"{place}: {name}")
@@ -155,6 +155,8 @@ def arrays_of(network: Network) -> Arrays:
     made: Arrays = {name: getattr(network, name) for name in NUMBERS if not name.startswith(("input_l", "input_h"))}
     made |= {"input_low": network.input_range[:, 0], "input_high": network.input_range[:, 1]}
     made |= {"input_names": np.array(network.input_names), "output_names": np.array(network.output_names)}
+    if not np.isnan(network.decision_s):
+        made["decision_s"] = np.array(network.decision_s)
     for number, layer in enumerate(network.layers):
         for part in OF_LAYER:
             if hasattr(layer, part):
