@@ -197,6 +197,21 @@ def test_search_that_ends_early_says_so_in_one_line(
     assert line.startswith("python -m pogosim.learning.learners.own: ")
 
 
+@pytest.mark.parametrize("problem", [KeyboardInterrupt(), OSError("full")])
+def test_search_that_ends_early_keeps_its_policy(
+    problem: BaseException, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def learner(*_task: object, **_options: object) -> Iterator[Generation]:
+        yield Generation(8, np.zeros(1), np.full(38, 0.5))
+        raise problem
+
+    file = tmp_path / "policy.npz"
+    assert main(learner, "own", "About.", ["phototaxis", "-o", str(file)]) in (2, 130)
+    assert capsys.readouterr().err.splitlines()[0].endswith(f"warning: {file} has the policy after 8 episodes")
+    assert (Policy.load(file).network.layers[0].weights == 0.5).all()
+    assert [*tmp_path.iterdir()] == [file]
+
+
 def test_learner_without_its_package_says_how_to_install_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

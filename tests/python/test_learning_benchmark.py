@@ -86,6 +86,22 @@ def test_file_has_each_test_in_a_row(
     assert len(lines) == 7 + 2 + 3
 
 
+def test_benchmark_that_is_interrupted_keeps_its_results(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_task: object, **_options: object) -> Iterator[Generation]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(LEARNERS, "interrupted", interrupted)
+    file = tmp_path / "scores.csv"
+    assert main(["--tasks", "phototaxis", "--learners", "interrupted", "--budget", "2", "-o", str(file)]) == 130
+    assert pd.read_csv(file)["policy"].tolist() == ["random", "by hand"]
+    warned, told = capsys.readouterr().err.splitlines()
+    assert warned.endswith(f"warning: {file} has 2 results")
+    assert told.endswith("interrupted")
+    assert [*tmp_path.iterdir()] == [file]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

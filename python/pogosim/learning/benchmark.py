@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,17 +31,16 @@ from pogosim.learning.learners.running import (
     MOST_SEED,
     Learner,
     add_search_options,
-    checked_file,
     ended,
     learn,
     require,
     tested,
+    written_in_any_case,
 )
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.learning.tasks import TASKS, BenchmarkTask, Controller, task_of
 from pogosim.lines import say
 from pogosim.nearest_name import advice
-from pogosim.outputs import partial_output
 from pogosim.simulation import ConfigurationError
 
 LEARNERS: dict[str, Learner] = {"cma_es": cma_es, "ppo": ppo, "embodied": embodied, "map_elites": map_elites}
@@ -153,6 +153,7 @@ def measure(
     budget: int,
     seeds: Sequence[int],
     tell: Callable[[str], None] = say,
+    keep: Callable[[list[Result]], None] = lambda _tests: None,
     **options: Any,
 ) -> list[Result]:
     """Let all learners do all tasks.
@@ -163,6 +164,7 @@ def measure(
         budget: Episodes of a search.
         seeds: Each repeats all.
         tell: What is called with a line for each policy.
+        keep: What is called with its results, for measurements that are interrupted.
         **options: Those of environments.
 
     Raises:
@@ -174,6 +176,7 @@ def measure(
         for seed in seeds:
             start_s = time.perf_counter()
             for tests in results(task_of(name), learners, budget, seed, **options):
+                keep(tests)
                 now_s = time.perf_counter()
                 tell(f"{name}, seed {seed}: {tests[-1].policy} {tests[-1].score:.3f}, {now_s - start_s:.1f} s")
                 found += tests
@@ -202,15 +205,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     def run() -> None:
         tasks = names_in("--tasks", options.tasks, [*TASKS])
         learners = names_in("--learners", options.learners, [*LEARNERS])
-        file = None if options.output is None else checked_file(options.output, ".csv")
+        found: list[Result] = []
+
+        def save(file: Path) -> str:
+            pd.DataFrame(found).to_csv(file, index=False)
+            return f"{len(found)} results" if found else ""
+
         if options.seed + options.seeds - 1 > MOST_SEED:
             most = MOST_SEED + 1 - options.seeds
             raise ConfigurationError(f"--seed: expected {most} at most for {options.seeds} seeds")
-        found = measure(tasks, learners, options.budget, range(options.seed, options.seed + options.seeds))
-        say("", *table(found))
-        if file is not None:
-            with partial_output(file) as unfinished:
-                pd.DataFrame(found).to_csv(unfinished, index=False)
+        seeds = range(options.seed, options.seed + options.seeds)
+        with written_in_any_case(prog, options.output, ".csv", save):
+            measure(tasks, learners, options.budget, seeds, keep=found.extend)
+            say("", *table(found))
 
     return ended(prog, run)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.util
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pogosim.command.parser import Parser, complain, guarded, whole
+from pogosim.command.parser import Parser, complain, guarded, warn, whole
 from pogosim.extras import installing
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.swarm_env import SwarmEnv
@@ -27,6 +28,10 @@ TEST_EPISODES = 16
 FIRST_TEST_SEED = 2**30  # seeds of episodes: those below are for learning
 MOST_SEED = 2**31 - 2  # of CMA-ES
 INTERRUPTED = 130  # exit code
+
+
+class NotYetError(Exception):
+    """There is nothing to write yet."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +110,7 @@ def learn(
     seed: int,
     tell: Callable[[str], None] = say,
     tests: int = 1,
+    keep: Callable[[Generation], None] = lambda _now: None,
     **options: Any,
 ) -> Learnt:
     """Let a learner learn, and test what it has learnt.
@@ -116,6 +122,7 @@ def learn(
         seed: Equal ones give equal results.
         tell: What is called with a line for each generation.
         tests: How often the policy is tested, at equal distances, the last time at the end. The learner does not know.
+        keep: What is called with each generation, for those that are interrupted.
         **options: Those of environments.
 
     Raises:
@@ -130,6 +137,7 @@ def learn(
         return Learnt(now.weights, scores, [*found.episodes, now.episodes], curve)
 
     for now in learner(task, budget, seed, **options):
+        keep(now)
         tell(f"episodes {now.episodes:6d}: mean {now.scores.mean():.4f}, best {now.scores.max():.4f}")
         if now.episodes * tests >= budget * (len(found.curve) + 1):
             found = test(now)
@@ -174,6 +182,41 @@ def checked_file(name: str, ending: str) -> Path:
     return real_output(name)
 
 
+@contextlib.contextmanager
+def written_in_any_case(prog: str, name: str | None, ending: str, write: Callable[[Path], str]) -> Iterator[None]:
+    """Write a file when the block ends, also if it is interrupted or fails: learning takes long.
+
+    Args:
+        prog: Name of the command, for what is said of a file that is not all of it.
+        name: The file, which must be possible to write before the block begins; None: nothing is written.
+        ending: How its name must end.
+        write: Writes what there is, and returns what it is, in words; empty: nothing yet, and no file is left.
+
+    Raises:
+        OutputError, OSError: It cannot be written.
+    """
+    if name is None:
+        yield
+        return
+    file = checked_file(name, ending)
+    try:
+        with partial_output(file):
+            raise NotYetError  # it can be written, so its name is free again
+    except NotYetError:
+        pass
+    try:
+        yield
+    except BaseException:
+        with contextlib.suppress(NotYetError), partial_output(file) as unfinished:
+            what = write(unfinished)
+            if not what:
+                raise NotYetError from None
+            warn(prog, f"{name} has {what}")
+        raise
+    with partial_output(file) as unfinished:
+        write(unfinished)
+
+
 def main(learner: Learner, name: str, about: str, arguments: Sequence[str] | None = None) -> int:
     """Run the command line of a learner; returns the exit code.
 
@@ -192,11 +235,17 @@ def main(learner: Learner, name: str, about: str, arguments: Sequence[str] | Non
 
     def run() -> None:
         task = task_of(options.task)
-        file = None if options.output is None else checked_file(options.output, ".npz")
-        found = learn(learner, task, options.budget, options.seed)
-        say(f"test: {found.tested.mean():.4f} +- {found.tested.std():.4f}")
-        if file is not None:
-            with task.make_env() as env, partial_output(file) as unfinished:
-                perceptron_of(env).save(found.weights, env, unfinished)
+        generations: list[Generation] = []
+
+        def save(file: Path) -> str:
+            if not generations:
+                return ""
+            with task.make_env() as env:
+                perceptron_of(env).save(generations[-1].weights, env, file)
+            return f"the policy after {generations[-1].episodes} episodes"
+
+        with written_in_any_case(prog, options.output, ".npz", save):
+            found = learn(learner, task, options.budget, options.seed, keep=generations.append)
+            say(f"test: {found.tested.mean():.4f} +- {found.tested.std():.4f}")
 
     return ended(prog, run)
