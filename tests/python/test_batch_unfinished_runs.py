@@ -97,7 +97,7 @@ def test_batch_that_is_asked_to_end_saves_states_at_once(tmp_path: Path) -> None
         time.sleep(0.01)
     time.sleep(0.5)
     assert end(process, signal.SIGTERM).splitlines()[-1] == (
-        "pogobatch: interrupted: the states of 2 unfinished runs are in tmp; the same command continues"
+        "pogobatch: interrupted: tmp has the states of 2 unfinished runs; the same command continues"
     )
     assert len(saved_states(tmp_path / "tmp")) == 2
 
@@ -116,7 +116,7 @@ def test_batch_says_what_it_leaves_and_how_states_are_continued(tmp_path: Path) 
     ):
         time.sleep(0.01)
     last = end(process, signal.SIGTERM).splitlines()[-1]
-    left = "2 finished runs and the state of 1 unfinished run are in tmp"
+    left = "tmp has 2 finished runs and the state of 1 unfinished run"
     assert last == f"pogobatch: interrupted: {left}; the same command continues"
     long.unlink()
     done = batch_apart(tmp_path, "-j", "1", "-r", "3", program=program)
