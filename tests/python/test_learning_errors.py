@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -336,3 +337,18 @@ def test_interfaces_refuse_environments_that_they_cannot_be_of() -> None:
             with pytest.raises(pogosim.ConfigurationError) as error:
                 envs.reset(options={"reset_mask": mask})
             assert message in refusal(error)
+
+
+@pytest.mark.parametrize(
+    ("observation", "said"),
+    [
+        (
+            ["photosensors", "photosensors[0]"],
+            "observation: 'photosensors[0]' is there twice; expected each number once",
+        ),
+        (["photosensors[1]", "messages", "photosensors"], "observation: 'photosensors[1]' is there twice; expected "),
+    ],
+)
+def test_a_number_is_observed_once(observation: list[str], said: str) -> None:
+    with pytest.raises(pogosim.ConfigurationError, match=re.escape(said)):
+        hosted_env(observation=observation)

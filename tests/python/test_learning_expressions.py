@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from typing import Any
 
@@ -138,3 +139,16 @@ def test_a_hundred_brackets_and_long_sums_are_read_from_deep_below() -> None:
         return [numbers("(" * 99 + "1" + ")" * 99), numbers("1" + "+1" * 499)]
 
     assert below(700) == [1.0, 500.0]
+
+
+def test_values_of_other_shapes_are_broadcast_as_by_numpy() -> None:
+    values = {"x": np.arange(6.0).reshape(2, 3), "y": np.array([10.0, 20.0, 30.0])}
+    expression = Expression("reward", "x + y", ("x", "y"))
+    assert (expression.numbers(values.__getitem__) == values["x"] + values["y"]).all()
+    with pytest.raises(ValueError, match="shape mismatch"):
+        expression.numbers({"x": np.ones(2), "y": np.ones(3)}.__getitem__)
+
+
+def test_expressions_are_not_copied() -> None:
+    with pytest.raises(TypeError, match="cannot be copied"):
+        copy.copy(Expression("reward", "1", ()))

@@ -51,12 +51,21 @@ class Expression:
         self.names = tuple(names.split("\n")) if names else ()
 
     def numbers(self, read: Read) -> Array:
-        """Return its value for all robots, of the shape that `read` gives (one number if it names no value)."""
+        """Return its value for all robots, of the shape that `read` gives (one number if it names no value).
+
+        Raises:
+            ValueError: Values have shapes that NumPy does not broadcast.
+        """
         values = [np.ascontiguousarray(read(name), np.float32) for name in self.names]
+        if len({value.shape for value in values}) > 1:
+            values = [np.ascontiguousarray(value) for value in np.broadcast_arrays(*values)]
         numbers = np.empty(values[0].shape if values else (), np.float32)
         places = (c_void_p * len(values))(*(value.ctypes.data for value in values))
         library().pogosim_expression_numbers(self._handle, places, numbers.size, numbers.ctypes.data)
         return numbers
+
+    def __reduce__(self) -> Any:
+        raise TypeError("expressions cannot be copied or pickled: read the text again")
 
     def is_true(self, read: Read) -> npt.NDArray[np.bool_]:
         """Return where it is true: neither 0 nor NaN."""

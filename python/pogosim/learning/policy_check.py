@@ -29,6 +29,20 @@ def name_in_c(feature: str) -> str:
     return re.sub(r"\W+", "_", feature).strip("_")
 
 
+def check_distinct(what: str, features: Sequence[str]) -> None:
+    """Check that numbers of a policy have names of their own in C, where case does not count.
+
+    Raises:
+        ConfigurationError: Two have the same.
+    """
+    seen: dict[str, str] = {}
+    for feature in features:
+        other = seen.setdefault(name_in_c(feature).upper(), feature)
+        if other is not feature:
+            both = f"{feature!r} is there twice" if other == feature else f"{other!r} and {feature!r} are one name in C"
+            raise ConfigurationError(f"{what}: {both}; expected each number once")
+
+
 def policy_arrays(observation: Scaling, actions: Scaling, decision_s: float) -> Arrays:
     """Return the arrays that say what the numbers of a policy are, and how far apart its decisions."""
     return {

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from pogosim.arguments import shown, without_numpy
 from pogosim.learning.actions import Actions
 from pogosim.learning.configuration import ConfigurationFile
-from pogosim.learning.policy_check import Arrays, check_policy, policy_arrays
+from pogosim.learning.policy_check import Arrays, check_distinct, check_policy, policy_arrays
 from pogosim.learning.quantities import Scaling, check_finite, resolved
 from pogosim.learning.randomization import Randomization
 from pogosim.learning.reward_and_end import End, OfSwarm, Reward, time_limit
@@ -144,7 +144,9 @@ class TaskOfRuns:
         self.scaling = Scaling(
             resolved("observation", task.observation, lambda name: find_value(known, name, "observation"))
         )
+        check_distinct("observation", self.scaling.features)
         self.actions = Actions(self.swarm, task.actions)
+        check_distinct("actions", self.actions.scaling.features)
         self.reward = Reward(task.reward, self.swarm)
         self.end = End(task.end, self.swarm)
 
