@@ -6,8 +6,9 @@
     .venv/bin/python docs/figures/all.py --times    # measures all times, on a machine that does nothing else
 
 Needs the examples (./build.sh). What a run does, to the last bit, depends on the compiler and the C library: the
-pictures are those of Debian 12 on x86-64. Studies of many runs (docs/optimization.md, validation.md, learning.md) take
-up to half an hour each, so a short run of each tells whether they are out of date, and only then the whole is repeated.
+pictures are those of Debian 12 on x86-64. Studies of many runs (docs/optimization.md, validation.md, learning.md,
+learners.md) take up to half an hour each, so a short run of each tells whether they are out of date, and only then the
+whole is repeated.
 Times are never out of date by themselves; pages tell when, where and with which version they were measured.
 """
 

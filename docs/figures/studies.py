@@ -8,11 +8,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import learners
 import numpy as np
 import pandas as pd
 import tuning
 import validation
 from pictures import ROOT, Picture, fingerprint, from_figure
+from pogosim.learning import benchmark
+from pogosim.learning.tasks import TASKS
 from quotes import Quote, paragraph
 
 sys.path += [str(ROOT / "examples" / "learning"), str(ROOT / "bench")]
@@ -20,6 +23,7 @@ sys.path += [str(ROOT / "examples" / "learning"), str(ROOT / "bench")]
 ENGINES = ("box2d", "disk")
 ROBOTS = 300  # of the comparison of engines
 SEEDS = 6
+LEARNERS_BUDGET, LEARNERS_SEEDS = 240, range(1, 4)
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,35 @@ def learn(_folder: Path) -> dict[str, Picture | Quote]:
     }
 
 
+def learners_a_little(_folder: Path) -> str:
+    """Do each task with each learner, in one short search."""
+    found = benchmark.measure(
+        [*TASKS], [*benchmark.LEARNERS], 32, range(1, 2), tell=lambda _line: None, end=1.0, threads=1
+    )
+    return fingerprint(pd.DataFrame(found))
+
+
+def pictured_learners(found: Sequence[benchmark.Result]) -> dict[str, Picture | Quote]:
+    """Return what the page says of the scores of learners."""
+    rows = pd.DataFrame(found)
+    made = (
+        f"Made with `--budget {LEARNERS_BUDGET} --seeds {len(LEARNERS_SEEDS)}`, which is little: longer searches get "
+        "further. Each seed has a search of its own, and 16 test episodes, the same for all policies, from which "
+        "nothing is learnt; intervals of the means over seeds are those of Student's t. `random` does anything. "
+        "Policies that are learnt are perceptrons with six hidden units."
+    )
+    return {
+        "learners.md: scores": Quote(tuple(benchmark.table(found))),
+        "learners.md: made": paragraph(made),
+        "learners.png": from_figure(learners.figure_of(rows), 90, rows),
+    }
+
+
+def compare_learners(_folder: Path) -> dict[str, Picture | Quote]:
+    """Do each task with each learner as the page says."""
+    return pictured_learners(benchmark.measure([*TASKS], [*benchmark.LEARNERS], LEARNERS_BUDGET, LEARNERS_SEEDS))
+
+
 def compared(first: str, columns: Sequence[str], rows: Mapping[tuple[str, str], Callable[[int], list[float]]]) -> Quote:
     """Compare runs: means and standard deviations between SEEDS seeds, in Markdown.
 
@@ -180,6 +213,7 @@ def compare_shapes_in_both(_folder: Path) -> dict[str, Picture | Quote]:
 STUDIES = {
     "engines": Study("physics.md: engines", (), compare_engines_a_little, compare_both_engines),
     "boxes": Study("physics.md: boxes", (), compare_shapes_a_little, compare_shapes_in_both),
+    "learners": Study("learners.md: scores", ("learners.png",), learners_a_little, compare_learners),
     "learning": Study("learning.md: returns", ("learning.png",), learn_a_little, learn),
     **{
         f"tuning_{scene}": Study(

@@ -29,7 +29,7 @@ def test_pictures_and_texts_are_what_the_tree_makes_today(script: str, tmp_path:
     assert differences(today) == [], "to renew: .venv/bin/python docs/figures/all.py; then look at the pictures"
 
 
-@pytest.mark.parametrize("study", ["engines", "boxes", "learning"])
+@pytest.mark.parametrize("study", ["engines", "boxes", "learning", "learners"])
 def test_numbers_of_studies_are_those_of_the_tree(study: str) -> None:
     """Those of tuning and validation are compared by their own tests, which run a little of them anyway."""
     assert check(study) == [], "to renew: .venv/bin/python docs/figures/all.py"
@@ -73,7 +73,7 @@ def quotes_on_pages() -> set[str]:
 def test_every_quote_of_a_page_is_made_by_a_program() -> None:
     made = {name for script in SCRIPTS.values() for name in script.NAMES if not name.endswith(".png")}
     made |= {study.quote for study in STUDIES.values()} | {times.quote for times in TIMES.values()}
-    made |= {"learning.md: caption", "physics.md: steps"}  # beside the numbers of their studies
+    made |= {"learning.md: caption", "learners.md: made", "physics.md: steps"}  # beside the numbers of their studies
     assert quotes_on_pages() == made
 
 
