@@ -23,7 +23,7 @@ ALL = {"plain": PLAIN, "linear": LINEAR, "elman": ELMAN, "gated": GATED}
 
 
 def sigmoid(x: Floats) -> Floats:
-    return 1.0 / (1.0 + np.exp(-x))
+    return np.exp(-np.logaddexp(0.0, -x))
 
 
 ACTIVATE: dict[str, Callable[[Floats], Floats]] = {

@@ -401,7 +401,7 @@ def test_what_cannot_be_run_is_one_clear_message(hosted: Path, scene: Path, tmp_
     subprocess.run(["cc", "-shared", "-fPIC", "-o", other, source], check=True)
     elsewhere = tmp_path / "elsewhere.so"
     code = other.read_bytes()
-    elsewhere.write_bytes(code[:18] + b"\xf3\x00" + code[20:])  # RISC-V
+    elsewhere.write_bytes(code[:18] + b"\x16\x00" + code[20:])  # S/390
     cases = [
         (tmp_path / "absent.so", scene, "the program '.*absent.so' cannot be read: No such file"),
         (tmp_path, scene, "is a folder"),
