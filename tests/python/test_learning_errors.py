@@ -154,6 +154,27 @@ def test_column_that_a_function_uses_needs_rows() -> None:
         assert env.step(np.zeros((1, ROBOTS, 2)))[1].shape == (1, ROBOTS)
 
 
+def test_action_on_a_parameter_that_the_program_has_not_read_is_refused() -> None:
+    with learning_env(actions=[("parameters.gain", -1, 1)]) as env:
+        env.reset(seed=1)
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            env.step(np.zeros((1, ROBOTS, 1)))
+        assert refusal(error).startswith("actions: parameters.gain: the program has not read it")
+
+
+@pytest.mark.parametrize("is_commanded", [False, True])
+def test_actions_that_the_program_overwrites_are_told_once(
+    is_commanded: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    with learning_env(set={"parameters.is_commanded": is_commanded}, runs=2) as env:
+        for _ in range(2):
+            env.reset(seed=1)
+            env.step(np.full((2, ROBOTS, 2), 0.25))
+    told = [message for message in caplog.messages if "user_data.action" in message]
+    assert len(told) == int(not is_commanded)
+    assert not told or told[0].startswith("actions: user_data.action: the program has written other numbers there")
+
+
 WRONG_ACTIONS: list[tuple[Any, str]] = [
     (None, "expected numbers of shape (2, 3, 2), found None"),
     ("ab", "expected numbers of shape (2, 3, 2), found 'ab'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
@@ -18,6 +19,8 @@ from pogosim.simulation import ConfigurationError
 
 Array = npt.NDArray[np.float32]
 Write = Callable[[Array], None]  # values in their own units, shape (runs, robots, numbers)
+
+logger = logging.getLogger("pogosim")
 
 PARAMETER = "parameters."
 FULL = 1023  # power of a motor
@@ -124,6 +127,12 @@ def as_integers(values: Array, kind: np.dtype[Any]) -> Array:
     return np.clip(np.rint(values), np.float32(limits.min), most)
 
 
+def as_stored(values: Array, view: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return numbers of robots in the type and shape of a member of user data. Shape (robots, ...)."""
+    numbers = values if view.dtype.kind == "f" else as_integers(values, view.dtype)
+    return numbers.astype(view.dtype, copy=False).reshape(-1, *view.shape[1:])
+
+
 class Actions:
     """Writes what a policy gives where robots find it.
 
@@ -144,6 +153,7 @@ class Actions:
             check_holds(quantity, limits_of(swarm, quantity.name))
         self._own = np.zeros((len(swarm.runs), swarm.robots, len(self.scaling)), np.float32)
         self._views: dict[str, list[npt.NDArray[Any]]] = {}  # of user data, by member
+        self._has_looked = False  # for what the program overwrites
         self._writes: list[tuple[Write, slice]] = [
             (self._write_of(quantity.name), part) for quantity, part in self.scaling.parts()
         ]
@@ -180,6 +190,26 @@ class Actions:
         for write, part in self._writes:
             write(self._own[..., part])
 
+    def tell_of_overwritten(self) -> None:
+        """Warn of user data that hold other numbers in all robots after the first step: the program decides itself."""
+        if self._has_looked:
+            return
+        self._has_looked = True
+        for quantity, part in self.scaling.parts():
+            if not quantity.name.startswith(USER_DATA):
+                continue
+            views = self._views[quantity.name.removeprefix(USER_DATA)]
+            if all(
+                (view[self._swarm.rows] != as_stored(of_run, view)).reshape(self._swarm.robots, -1).any(axis=1).all()
+                for view, of_run in zip(views, self._own[..., part], strict=True)
+            ):
+                logger.warning(
+                    "actions: %s: the program has written other numbers there than the policy, so robots may do "
+                    "something else; let it leave them alone while Python decides, as examples/learning does with "
+                    "set={'parameters.is_commanded': True}",
+                    quantity.name,
+                )
+
     def forget(self) -> None:
         """Ask for the memory of robots anew: some runs have begun again."""
         self._views.clear()
@@ -208,11 +238,12 @@ class Actions:
         if member not in self._views:
             self._views[member] = [field(simulation.user_data, member) for simulation in self._swarm.runs]
         for view, of_run in zip(self._views[member], values, strict=True):
-            view[self._swarm.rows] = (of_run if view.dtype.kind == "f" else as_integers(of_run, view.dtype)).reshape(
-                -1, *view.shape[1:]
-            )
+            view[self._swarm.rows] = as_stored(of_run, view)
 
     def _set_parameter(self, name: str, values: Array) -> None:
         """All robots of a run share a parameter: it gets the mean of what they ask for."""
         for simulation, of_run in zip(self._swarm.runs, values, strict=True):
-            simulation.parameters[name] = float(math.fsum(of_run.flat) / of_run.size)
+            try:
+                simulation.parameters[name] = float(math.fsum(of_run.flat) / of_run.size)
+            except ConfigurationError as error:
+                raise ConfigurationError(f"actions: {error}") from None

@@ -400,6 +400,7 @@ class SwarmEnv:
         if not begins_anew.all():
             self.swarm.before_step()
             self.runs.step(self._steps, None if not begins_anew.any() else ~begins_anew)
+            self._task.actions.tell_of_overwritten()
         if begins_anew.any():
             self._begin(np.flatnonzero(begins_anew).tolist())
         self.swarm.after_step()
