@@ -224,11 +224,26 @@ def test_reward_that_is_no_number_of_each_robot_is_refused(reward: Any, message:
         assert message in refusal(error)
 
 
-def test_end_that_is_no_truth_value_of_each_run_is_refused() -> None:
-    with hosted_env(end=lambda _: np.zeros(5)) as env:
+WRONG_ENDS: list[tuple[Any, str]] = [
+    (lambda _: np.zeros(2), "found numbers of shape (2,): compare them with something"),
+    (lambda swarm: swarm.time_s, "found numbers of shape (2,)"),
+    (lambda _: np.array([np.nan, 0.0]), "found numbers of shape (2,)"),
+    (lambda swarm: swarm["light"] > 0, "found an array of shape (2, 3): say whether any or all robots count, with"),
+    (lambda _: np.zeros(5, bool), "found an array of shape (5,)"),
+    (lambda _: True, "found an array of shape ()"),
+    (lambda _: None, "found NoneType"),
+    (lambda _: [[True], [True, False]], "found list"),
+]
+
+
+@pytest.mark.parametrize(("end", "message"), WRONG_ENDS, ids=[message[:50] for _, message in WRONG_ENDS])
+def test_end_that_is_no_truth_value_of_each_run_is_refused(end: Any, message: str) -> None:
+    with hosted_env(end=end, runs=2) as env:
         env.reset(seed=1)
-        with pytest.raises(pogosim.ConfigurationError, match=r"end: expected numbers of shape \(1, 3\)"):
-            env.step(np.zeros((1, 3, 2)))
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            env.step(np.zeros((2, 3, 2)))
+        assert refusal(error).startswith("end: expected booleans of shape (2,), one for each run; ")
+        assert message in refusal(error)
 
 
 def test_value_that_is_missing_is_refused_where_a_policy_sees_it() -> None:

@@ -24,15 +24,27 @@ def expression_of(what: str, text: str, swarm: SwarmArrays) -> Expression:
 
 
 def whether(condition: Expression) -> OfSwarm:
-    """Return a condition as a function."""
-    return lambda swarm: condition.is_true(swarm.__getitem__)
+    """Return a function that tells in which runs a condition is true of a robot."""
+
+    def is_true(swarm: SwarmArrays) -> npt.NDArray[np.bool_]:
+        shape = (len(swarm.runs), swarm.robots)  # an expression without values has none
+        return np.broadcast_to(condition.is_true(swarm.__getitem__), shape).any(axis=1)
+
+    return is_true
 
 
-def of_robots(what: str, found: Any, swarm: SwarmArrays) -> npt.NDArray[Any]:
-    """Return numbers or truth values of all robots.
+def array_of(found: Any) -> npt.NDArray[Any]:
+    """Return what a function has returned as an array, of objects if its lists have different lengths."""
+    try:
+        return np.asarray(found)
+    except (TypeError, ValueError):
+        return np.empty(0, dtype=object)
+
+
+def of_robots(found: Any, swarm: SwarmArrays) -> npt.NDArray[Any]:
+    """Return the rewards of all robots. Shape (runs, robots).
 
     Args:
-        what: What gave them.
         found: One for each run, or for each robot of each run.
         swarm: The robots.
 
@@ -40,17 +52,34 @@ def of_robots(what: str, found: Any, swarm: SwarmArrays) -> npt.NDArray[Any]:
         ConfigurationError: They are others.
     """
     shape = (len(swarm.runs), swarm.robots)
-    try:
-        array = np.asarray(found)
-    except (TypeError, ValueError):
-        array = np.empty(0, dtype=object)
+    array = array_of(found)
     if array.dtype.kind not in "biuf" or array.shape not in (shape, shape[:1]):
         kind = f"an array of shape {array.shape}" if array.dtype.kind in "biuf" else f"{type(found).__name__}"
         raise ConfigurationError(
-            f"{what}: expected numbers of shape {shape}, for each robot of each run, or {shape[:1]}, for each run; "
+            f"reward: expected numbers of shape {shape}, for each robot of each run, or {shape[:1]}, for each run; "
             f"found {kind}"
         )
     return np.broadcast_to(array[:, None], shape) if array.ndim == 1 else array
+
+
+def of_runs(found: Any, swarm: SwarmArrays) -> npt.NDArray[np.bool_]:
+    """Return in which runs an end is reached. Shape (runs,).
+
+    Raises:
+        ConfigurationError: What a function has found is no array of booleans, one for each run.
+    """
+    array = array_of(found)
+    if array.dtype.kind == "b" and array.shape == (len(swarm.runs),):
+        return array
+    if array.dtype.kind == "b":
+        kind = f"an array of shape {array.shape}"
+        if array.shape == (len(swarm.runs), swarm.robots):
+            kind += ": say whether any or all robots count, with .any(axis=1) or .all(axis=1)"
+    elif array.dtype.kind in "iuf":
+        kind = f"numbers of shape {array.shape}: compare them with something"
+    else:
+        kind = type(found).__name__
+    raise ConfigurationError(f"end: expected booleans of shape ({len(swarm.runs)},), one for each run; found {kind}")
 
 
 class Reward:
@@ -87,7 +116,7 @@ class Reward:
         Raises:
             ConfigurationError: Numbers are of another shape, or not finite.
         """
-        found = np.array(of_robots("reward", self._of(self._swarm), self._swarm), dtype=np.float64)
+        found = np.array(of_robots(self._of(self._swarm), self._swarm), dtype=np.float64)
         found[begins_anew] = 0.0
         check_finite("reward", found, where=self._swarm.when)
         return found
@@ -119,15 +148,14 @@ class End:
         self.names = tuple(names)
 
     def is_reached(self) -> npt.NDArray[np.bool_]:
-        """Return in which runs a condition is true of a robot. Shape (runs,)."""
+        """Return in which runs a condition is true of a robot, or a function says so. Shape (runs,).
+
+        Raises:
+            ConfigurationError: A function has returned something else.
+        """
         reached = np.zeros(len(self._swarm.runs), dtype=np.bool_)
         for condition in self._conditions:
-            found = condition(self._swarm)
-            shape = (len(self._swarm.runs), self._swarm.robots)
-            is_constant = np.shape(found) == ()  # an expression without values
-            reached |= of_robots("end", np.broadcast_to(found, shape) if is_constant else found, self._swarm).any(
-                axis=1
-            )
+            reached |= of_runs(condition(self._swarm), self._swarm)
         return reached
 
 

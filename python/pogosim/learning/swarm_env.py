@@ -207,9 +207,10 @@ class SwarmEnv:
             actions: What it does with each robot, likewise.
             reward: What a step is worth: a function of a `SwarmArrays` that returns an array of shape (runs, robots) or
                 (runs,), or an expression of values of a robot, such as "light / 1000" or "heard".
-            end: When an episode ends: a time (s), which truncates it; a condition, such as "light > 900", or a function
-                of a `SwarmArrays`, which terminate it in runs where they are true of a robot; or a list of these. Where
-                none is a time, the `simulation_time` of the configuration is.
+            end: When an episode ends: a time (s), which truncates it; a condition, such as "light > 900", which
+                terminates it in runs where it is true of a robot; a function of a `SwarmArrays` that returns booleans
+                of shape (runs,), which does so where they are true; or a list of these. Where none is a time, the
+                `simulation_time` of the configuration is.
             randomize: Keys of the configuration that are drawn for each episode, see `draw_of` of `randomization`.
             runs: How many at once.
             category: That of the robots.
@@ -379,7 +380,8 @@ class SwarmEnv:
             observations before they began anew.
 
         Raises:
-            ConfigurationError: Actions, observations or rewards are not finite numbers, or of another shape.
+            ConfigurationError: Actions, observations or rewards are not finite numbers, or of another shape; or a
+                function `end` returns no booleans of shape (runs,).
             SimulationError: An episode has not begun, or is over, or the last step was interrupted or failed: `reset`.
             ProgramFailedError: The program crashed, or did not return.
         """
