@@ -304,6 +304,23 @@ def test_value_that_is_drawn_and_wrong_is_told_with_its_key_and_the_next_episode
         )
 
 
+def test_fractions_that_are_drawn_for_integers_are_refused_with_what_to_write() -> None:
+    key = "objects.robots.message_queue_size"
+    with hosted_env(randomize={key: [2, 9]}, runs=2) as env:
+        for _ in range(2):
+            with pytest.raises(pogosim.ConfigurationError) as error:
+                env.reset(seed=1)
+            assert refusal(error).startswith(f"randomize: {key}: expected integers, found ")
+            assert refusal(error).endswith(": write {'type': 'int', 'min': 2, 'max': 9}")
+    with hosted_env(randomize={key: lambda _: 4.5}) as env:
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            env.reset(seed=1)
+        assert refusal(error) == f"randomize: {key}: expected integers, found 4.5"
+    of_integers = {"type": "int", "min": 2, "max": 9}
+    with hosted_env(randomize={key: of_integers, "objects.robots.linear_noise_stddev": [0, 0.3]}) as env:
+        assert env.reset(seed=1)[1]["randomized"][key].dtype.kind == "i"
+
+
 WRONG_POLICIES: list[tuple[dict[str, Any], str]] = [
     ({"input_names": ["light", "x"]}, "is for another observation: its input 1 is 'x', and that of the environment "),
     ({"input_names": ["light"]}, "is for another observation: it has 1 inputs (light), and the environment has 2"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,11 @@ FORMS = "an interval [low, high], a list of values, a map such as {type: int, mi
 def is_number(value: Any) -> bool:
     """Tell whether a value is a finite number."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def is_interval(values: Any) -> bool:
+    """Tell whether the values of a key are all numbers between two."""
+    return isinstance(values, list | tuple) and len(values) == 2 and all(map(is_number, values))
 
 
 def from_domain(domain: Domain) -> Draw:
@@ -96,7 +101,7 @@ def draw_of(name: str, values: Any) -> Draw:
     if isinstance(plain, Mapping):
         return of_map(name, given.value(name, plain))
     if isinstance(plain, list | tuple):
-        if len(plain) == 2 and all(map(is_number, plain)):
+        if is_interval(plain):
             return interval(name, float(plain[0]), float(plain[1]))
         return one_of(name, plain)
     if callable(values):
@@ -120,13 +125,39 @@ class Randomization:
         if randomize is not None and not isinstance(randomize, Mapping):
             raise given.refused("randomize", "a map from keys of the configuration to what is drawn", randomize)
         self._draws: dict[str, Draw] = {}
+        self._advice: dict[str, str] = {}  # what to write instead of an interval, for integers
+        self._unchecked = {*(randomize or {})}  # of which no fraction has been drawn yet
         for key, values in (randomize or {}).items():
             name = given.text("randomize: a key", key)
             self._draws[name] = draw_of(f"randomize: {name}", values)
             if name in NOT_DRAWN:
                 raise ConfigurationError(f"randomize: {name} cannot be drawn: {NOT_DRAWN[name]}")
+            if is_interval(plain := without_numpy(values)):
+                low, high = math.ceil(plain[0]), math.floor(plain[1])
+                self._advice[name] = f": write {{'type': 'int', 'min': {low}, 'max': {high}}}"
         self.keys = tuple(self._draws)
 
     def drawn(self, generator: np.random.Generator) -> dict[str, Any]:
         """Draw values, one for each key."""
         return {key: draw(generator) for key, draw in self._draws.items()}
+
+    def check_integers(self, drawn: Iterable[Mapping[str, Any]], warnings: Collection[str]) -> None:
+        """Check that the simulator has used fractions as they were drawn.
+
+        Args:
+            drawn: What was drawn for some runs, which have begun with it.
+            warnings: Those of the simulator: it uses another number where a key is one of integers.
+
+        Raises:
+            ConfigurationError: It has used another number.
+        """
+        if not self._unchecked:
+            return
+        for of_run in drawn:
+            for key, value in of_run.items():
+                if key not in self._unchecked or not is_number(value) or value == int(value):
+                    continue
+                if any(f": {key}: expected an integer, found" in warning for warning in tuple(warnings)):
+                    advised = self._advice.get(key, "")
+                    raise ConfigurationError(f"randomize: {key}: expected integers, found {value:g}{advised}")
+                self._unchecked.discard(key)

@@ -24,7 +24,7 @@ from pogosim.outputs import PathLike
 from pogosim.simulation import ConfigurationError, SavedState, SimulationError, VectorSimulation
 from pogosim.simulation.arrays import chosen_rows
 from pogosim.simulation.errors import given
-from pogosim.simulation.run import checked_settings
+from pogosim.simulation.run import checked_settings, checked_warned
 
 Array = npt.NDArray[Any]
 Info = dict[str, Any]
@@ -239,6 +239,7 @@ class SwarmEnv:
         settings = self._settings(program, task.category, limit_s) | checked_settings(set)
         count = given.integer("runs", runs, 1, MOST_RUNS)
         self._file = ConfigurationFile(configuration)
+        self._warned = checked_warned(warned)
         try:
             self.runs = VectorSimulation(
                 program,
@@ -248,7 +249,7 @@ class SwarmEnv:
                 set=settings,
                 strict=strict,
                 strict_set=True,
-                **({} if warned is None else {"warned": warned}),
+                warned=self._warned,
             )
         except BaseException:
             self._file.close()
@@ -356,6 +357,7 @@ class SwarmEnv:
         self._is_over[chosen] = True  # until it has begun
         begun = [self._episodes[run] for run in chosen]
         self.runs.reset([episode.seed for episode in begun], chosen, [episode.drawn for episode in begun])
+        self._randomization.check_integers([episode.drawn for episode in begun], self._warned)
         self._task.actions.forget()
         self.swarm.after_step()
         for run in chosen:
