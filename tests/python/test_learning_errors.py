@@ -321,6 +321,45 @@ def test_fractions_that_are_drawn_for_integers_are_refused_with_what_to_write() 
         assert env.reset(seed=1)[1]["randomized"][key].dtype.kind == "i"
 
 
+def test_category_whose_number_of_robots_was_drawn_is_named() -> None:
+    others = {"objects.others": {"type": "pogobot", "nb": 1, "brain": "host"}}
+    with hosted_env(others, randomize={"objects.others.nb": {"choices": [2]}}) as env:
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            env.reset(seed=1)
+        assert "run 0 has 2 robots in category 'others' since its reset, and had 1: arrays" in refusal(error)
+
+
+def test_maps_in_set_are_told_how_to_be_written() -> None:
+    for objects in (
+        {"robots": {"linear_noise_stddev": 0.1}},
+        {"robots": {"radius": 20, "nb": 3}, "lamp": {"value": 3}},
+    ):
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            hosted_env(set={"objects": objects})
+        key = f"objects.robots.{next(iter(objects['robots']))}"
+        assert refusal(error) == (
+            f"set: objects: a map replaces all categories: write the keys one by one, such as {key!r}"
+        )
+
+
+def test_mistake_in_a_map_is_told_as_one_of_the_map() -> None:
+    for changes, options, message in (
+        (
+            {"objects.robots.raduis": 20},
+            {"strict": True},
+            "configuration: unknown key 'objects.robots.raduis'; did you mean 'radius'? (strict)",
+        ),
+        (
+            {"objects.robots.radius": "x"},
+            {},
+            "configuration: objects.robots.radius: expected a number from 0.001 to 1000000 (mm), found 'x'",
+        ),
+    ):
+        with pytest.raises(pogosim.ConfigurationError) as error:
+            hosted_env(changes, **options)
+        assert refusal(error) == message
+
+
 WRONG_POLICIES: list[tuple[dict[str, Any], str]] = [
     ({"input_names": ["light", "x"]}, "is for another observation: its input 1 is 'x', and that of the environment "),
     ({"input_names": ["light"]}, "is for another observation: it has 1 inputs (light), and the environment has 2"),

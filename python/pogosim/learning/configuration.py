@@ -8,8 +8,32 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from pogosim.simulation.errors import given
+from pogosim.simulation.errors import ConfigurationError, given
 from pogosim.simulation.forked import finalize_here
+from pogosim.simulation.library import files_of_maps
+
+
+def remove(folder: Path, file: str) -> None:
+    """Remove the folder of a temporary file, which messages name no more."""
+    files_of_maps.discard(file)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_replaced(settings: Mapping[str, Any]) -> None:
+    """Check that no map of a setting takes the place of categories that it means to change.
+
+    Raises:
+        ConfigurationError: A category in it has no type; says how to write its keys.
+    """
+    for key, value in settings.items():
+        if key != "objects" or not isinstance(value, Mapping):
+            continue
+        for category, keys in value.items():
+            if isinstance(keys, Mapping) and keys and "type" not in keys:
+                raise ConfigurationError(
+                    f"set: objects: a map replaces all categories: write the keys one by one, such as "
+                    f"{f'objects.{category}.{next(iter(keys))}'!r}"
+                )
 
 
 class ConfigurationFile:
@@ -34,7 +58,7 @@ class ConfigurationFile:
 
         text = dump_yaml(given.value("configuration", configuration))
         folder = Path(tempfile.mkdtemp(prefix="pogosim-"))
-        ignores_errors = True
-        self.close = finalize_here(self, shutil.rmtree, folder, ignores_errors)
         self.path = folder / "configuration.yaml"
+        files_of_maps.add(str(self.path))
+        self.close = finalize_here(self, remove, folder, str(self.path))
         self.path.write_text(text, encoding="utf-8")

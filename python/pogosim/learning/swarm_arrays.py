@@ -116,6 +116,16 @@ def rows_of(simulation: Simulation, category: str) -> npt.NDArray[np.int64]:
     return rows
 
 
+def robots_by_category(simulation: Simulation) -> dict[str, int]:
+    """Return how many robots each category has."""
+    names = simulation.categories
+    counts = np.bincount(simulation.robot_categories, minlength=len(names))
+    found: dict[str, int] = {}
+    for name, count in zip(names, counts.tolist(), strict=True):
+        found[name] = found.get(name, 0) + count
+    return found
+
+
 def as_slice(rows: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
     """Return rows that follow each other as a slice, which copies nothing."""
     first, last = int(rows[0]), int(rows[-1])
@@ -233,7 +243,7 @@ class SwarmArrays:
         first = runs[0]
         self.known = known_values(first, category)
         self._all_rows = rows_of(first, category)
-        self._robot_count = len(first.robot_ids)
+        self._robots_by_category = robots_by_category(first)
         self.robots = len(self._all_rows)
         self.rows = as_slice(self._all_rows)
         self._brain: VectorBrain | None = runs.brain(category) if is_hosted(first, category) else None
@@ -390,11 +400,15 @@ class SwarmArrays:
             ConfigurationError: It has others.
         """
         simulation = self.runs[run]
-        if len(simulation.robot_ids) != self._robot_count or not np.array_equal(
+        if len(simulation.robot_ids) != sum(self._robots_by_category.values()) or not np.array_equal(
             rows_of(simulation, self.category), self._all_rows
         ):
-            found = len(rows_of(simulation, self.category))
+            found = robots_by_category(simulation)
+            category = next(
+                (name for name in found if found[name] != self._robots_by_category.get(name)), self.category
+            )
             raise ConfigurationError(
-                f"run {run} has {found} robots in category {shown(self.category)} since its reset, and had "
-                f"{self.robots}: arrays need the same robots in all episodes, so do not draw their number"
+                f"run {run} has {found[category]} robots in category {shown(category)} since its reset, and had "
+                f"{self._robots_by_category.get(category, 0)}: arrays need the same robots in all episodes, so do not "
+                "draw their number"
             )

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from pogosim.arguments import shown, without_numpy
 from pogosim.learning.actions import Actions
-from pogosim.learning.configuration import ConfigurationFile
+from pogosim.learning.configuration import ConfigurationFile, check_replaced
 from pogosim.learning.policy_check import Arrays, check_distinct, check_policy, policy_arrays
 from pogosim.learning.quantities import Scaling, check_finite, resolved
 from pogosim.learning.randomization import Randomization
@@ -236,7 +236,9 @@ class SwarmEnv:
         limit_s = time_limit(end)
         if math.isfinite(limit_s) and "simulation_time" in (set or {}):
             raise ConfigurationError("set: simulation_time is that of `end` where this has a time: give one of them")
-        settings = self._settings(program, task.category, limit_s) | checked_settings(set)
+        changes = checked_settings(set)
+        check_replaced(changes)
+        settings = self._settings(program, task.category, limit_s) | changes
         count = given.integer("runs", runs, 1, MOST_RUNS)
         self._file = ConfigurationFile(configuration)
         self._warned = checked_warned(warned)

@@ -253,13 +253,24 @@ def error_of(status: int, message: bytes) -> SimulationError:
     return kind(printable_lines(in_words_of_python(message.decode("utf-8", "replace"))))
 
 
+# Temporary files that hold maps, by which messages name the argument instead.
+files_of_maps: set[str] = set()
+
+
 def in_words_of_python(text: str) -> str:
-    """Return a message of the simulator, which names options of the command line, with the argument `set` instead.
+    """Return a message of the simulator with arguments in place of options, and `configuration` for files of maps.
 
     A hint at the option -v is left out: Python has none.
     """
+    for file in tuple(files_of_maps):
+        text = re.sub(rf"{re.escape(file)}(:\d+)?", "configuration", text) if file in text else text
     text = re.sub(r"^--set: ", "set: ", text, flags=re.MULTILINE)
-    return text.replace("(--set)", "(set)").replace("(--set;", "(set;").replace(" (-v lists them)", "")
+    return (
+        text.replace("(--strict)", "(strict)")
+        .replace("(--set)", "(set)")
+        .replace("(--set;", "(set;")
+        .replace(" (-v lists them)", "")
+    )
 
 
 def error_of_step(status: int, message: bytes) -> SimulationError:
