@@ -28,7 +28,9 @@ def whether(condition: Expression) -> OfSwarm:
 
     def is_true(swarm: SwarmArrays) -> npt.NDArray[np.bool_]:
         shape = (len(swarm.runs), swarm.robots)  # an expression without values has none
-        return np.broadcast_to(condition.is_true(swarm.__getitem__), shape).any(axis=1)
+        found: npt.NDArray[np.bool_] = np.broadcast_to(condition.is_true(swarm.__getitem__), shape)
+        reached: npt.NDArray[np.bool_] = np.any(found, axis=1)
+        return reached
 
     return is_true
 
