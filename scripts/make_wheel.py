@@ -181,7 +181,10 @@ def check_names_no_folder(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as content:
         named = [name for name in content.namelist() if os.fsencode(ROOT) in content.read(name)]
     if named:
-        raise SystemExit(f"make_wheel.py: {wheel.name} names folders of {ROOT}, in {', '.join(named)}")
+        raise SystemExit(
+            f"make_wheel.py: {wheel.name} names folders of {ROOT}, in {', '.join(named)}. Parts that were built "
+            "with other options are not built again: remove build/cross, and make it again"
+        )
 
 
 def make_wheel(output: Path, target: str | None, with_environment: bool) -> Path:
