@@ -9,8 +9,8 @@ from pathlib import Path
 # <elf.h>, <mach-o/loader.h>. Universal files of macOS are for several processors.
 OF_ELF = {3: "x86", 40: "ARM", 62: "x86-64", 183: "ARM64", 243: "RISC-V"}
 OF_MACH_O = {0x01000007: "x86-64", 0x0100000C: "ARM64"}
-OTHERS = {b"\xca\xfe\xba\xbe": "macOS", b"MZ": "Windows", b"\0asm": "WebAssembly"}
-ELF, MACH_O = b"\x7fELF", b"\xcf\xfa\xed\xfe"
+ELF, MACH_O, UNIVERSAL = b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe"
+OTHERS = {UNIVERSAL: "macOS", b"MZ": "Windows", b"\0asm": "WebAssembly"}
 LONGEST = 20  # bytes that are looked at
 # Processors that run programs of others, too.
 ALSO = {"x86-64": "x86", "ARM64": "ARM"}
@@ -30,6 +30,16 @@ def machine_of(beginning: bytes) -> str | None:
         (processor,) = struct.unpack_from("<I", beginning, 4)
         return f"macOS on {OF_MACH_O.get(processor, 'another processor')}"
     return next((name for magic, name in OTHERS.items() if beginning.startswith(magic)), None)
+
+
+def machine_of_file(path: Path) -> str | None:
+    """Return the same of a file.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    with path.open("rb") as file:
+        return machine_of(file.read(LONGEST))
 
 
 def this_machine() -> str:
@@ -56,9 +66,7 @@ def of_another_machine(path: Path) -> str | None:
     Raises:
         OSError: It cannot be read.
     """
-    with path.open("rb") as file:
-        machine = machine_of(file.read(LONGEST))
-    here = this_machine()
+    machine, here = machine_of_file(path), this_machine()
     if machine is None or runs_here(machine, here):
         return None
     return f"{path} is for {machine}, and this is {here}: compile it here (make sim)"

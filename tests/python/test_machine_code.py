@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pogosim.machine_code import LONGEST, machine_of, of_another_machine, runs_here, this_machine
+from pogosim.machine_code import LONGEST, machine_of, machine_of_file, of_another_machine, runs_here, this_machine
 
 
 def elf(processor: int, order: str = "<") -> bytes:
@@ -57,8 +57,7 @@ def test_programs_run_on_their_machines(machine: str, here: str, runs: bool) -> 
 
 def test_programs_of_this_machine_are_for_it() -> None:
     program = Path(sys.executable)
-    with program.open("rb") as file:
-        machine = machine_of(file.read(LONGEST))
+    machine = machine_of_file(program)
     assert machine is not None
     assert runs_here(machine, this_machine())
     assert of_another_machine(program) is None

@@ -17,7 +17,7 @@ from pogosim.errors import ToolError
 from pogosim.extensions import let_find_models
 from pogosim.firmware import is_firmware
 from pogosim.installation import Installation, find_installation
-from pogosim.machine_code import LONGEST, machine_of, of_another_machine
+from pogosim.machine_code import machine_of_file, of_another_machine
 from pogosim.projects import run_make
 from pogosim.system_packages import how_to_install
 
@@ -148,9 +148,8 @@ def program_of(what: Path, pogosim: Installation) -> Path:
         beside = f"; run {what.with_suffix('')}" if what.with_suffix("").is_file() else ", and no program (make sim)"
         raise RunError(f"{what} is a shared object, for Python and `pogosim watch`{beside}")
     if not os.access(what, os.X_OK):
-        with what.open("rb") as file:
-            if machine_of(file.read(LONGEST)):
-                raise RunError(f"{what} is not executable: chmod +x {what}")
+        if machine_of_file(what):
+            raise RunError(f"{what} is not executable: chmod +x {what}")
         raise RunError(f"{what} is neither a folder, a .c or .cpp file, a firmware, nor a program")
     return what
 

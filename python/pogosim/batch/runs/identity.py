@@ -18,7 +18,7 @@ from pogosim.batch.runs.named_files import entries_in, may_be_a_name, texts_at
 from pogosim.batch.runs.run_files import without_outputs
 from pogosim.firmware import is_firmware
 from pogosim.installation import find_installation
-from pogosim.machine_code import of_another_machine
+from pogosim.machine_code import ELF, MACH_O, UNIVERSAL, of_another_machine
 from pogosim.yaml_1_2 import dump_yaml
 
 # Keys that say, beside the names of outputs, where results go, not what they are.
@@ -32,7 +32,7 @@ SHARED_OBJECTS = (".so", ".dylib")  # with which pogosim.Simulation runs a progr
 
 # Every program of the simulator mentions its library, or contains it.
 MARK = b"pogosim"
-EXECUTABLES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
+EXECUTABLES = (ELF, MACH_O, UNIVERSAL)
 
 
 def find_program(name: str) -> Path:
