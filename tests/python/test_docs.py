@@ -15,6 +15,7 @@ import pytest
 from debugger import debug, needs_gdb
 from first_program import NAMES, pictures_in
 from pictures import difference
+from pogosim.command.docs import anchor_of
 from pogosim.utils import load_dataframe
 from project import CLEAN
 from robot_sdk import make_sdk
@@ -415,7 +416,7 @@ def test_callback_of_the_page_of_the_window_works_in_the_program_of_the_readme(t
 def anchors(page: Path) -> set[str]:
     """Return the names by which links address the headings of a page."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return {anchor_of(heading) for heading in headings}
 
 
 @pytest.mark.parametrize("page", [*PAGES, *DECISIONS], ids=name_of)
