@@ -67,8 +67,7 @@ class Perceptron:
             OSError: It cannot be written.
         """
         dense = [Dense(matrix[:, :-1], matrix[:, -1], "tanh") for matrix in self.layers(np.asarray(weights))]
-        described: dict[str, Any] = {name: array.tolist() for name, array in env.policy_arrays().items()}
-        Policy(network_of(dense, **described)).save(file)
+        Policy(network_of(dense, **env.policy_arrays())).save(file)
 
 
 def perceptron_of(env: SwarmEnv, hidden: int = 6) -> Perceptron:

@@ -11,13 +11,11 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Iterator
-from functools import partial
-from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from pogosim.learning.learners.running import Generation, learning_seeds, main
+from pogosim.learning.learners.running import Generation, learning_seeds, main, trials
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.tasks import BenchmarkTask, scores
 
@@ -36,12 +34,10 @@ def cma_es(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> Itera
         search = cma.CMAEvolutionStrategy(
             np.zeros(network.size), 0.5, {"seed": seed + 1, "popsize": CANDIDATES, "verbose": -9}
         )
-        seeds_of_episodes = learning_seeds(seed)
+        seeds = learning_seeds(seed)
         for generation in range(budget // each):
             found = np.array(search.ask())
-            by_run = np.repeat(found, EPISODES, axis=0)[:, None]
-            seeds = [*islice(seeds_of_episodes, EPISODES)] * CANDIDATES
-            judged = scores(env, partial(network.act, by_run), seeds)
+            judged = scores(env, *trials(network, found, seeds, EPISODES))
             mean = judged.reshape(CANDIDATES, EPISODES).mean(axis=1)
             search.tell(list(found), list(-mean))
             yield Generation((generation + 1) * each, mean, np.array(search.mean))

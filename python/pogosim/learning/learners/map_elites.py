@@ -11,13 +11,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from functools import partial
-from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from pogosim.learning.learners.running import Generation, learning_seeds, main, require
+from pogosim.learning.learners.running import Generation, learning_seeds, main, require, trials
 from pogosim.learning.perceptron import perceptron_of
 from pogosim.learning.tasks import BenchmarkTask, means
 
@@ -46,13 +44,11 @@ def map_elites(task: BenchmarkTask, budget: int, seed: int, **options: Any) -> I
         emitter = IsoLineEmitter(
             archive, iso_sigma=MUTATION, line_sigma=BETWEEN, x0=np.zeros(network.size), batch_size=CANDIDATES, seed=seed
         )
-        seeds_of_episodes = learning_seeds(seed)
+        seeds = learning_seeds(seed)
         for generation in range(budget // each):
             begin = generation * CANDIDATES
             found = first[begin : begin + CANDIDATES] if begin < len(first) else emitter.ask()
-            by_run = np.repeat(found, EPISODES, axis=0)[:, None]
-            seeds = [*islice(seeds_of_episodes, EPISODES)] * CANDIDATES
-            measured = means(env, partial(network.act, by_run), seeds, task.behaviours)
+            measured = means(env, *trials(network, found, seeds, EPISODES), task.behaviours)
             mean = measured.reshape(CANDIDATES, EPISODES, -1).mean(axis=1)
             archive.add(found, mean[:, 0], mean[:, 1:])
             yield Generation((generation + 1) * each, mean[:, 0], archive.best_elite["solution"])

@@ -8,6 +8,7 @@ import importlib.util
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy.typing as npt
 
 from pogosim.command.parser import Parser, complain, guarded, warn, whole
 from pogosim.extras import installing
-from pogosim.learning.perceptron import perceptron_of
+from pogosim.learning.perceptron import Perceptron, perceptron_of
 from pogosim.learning.swarm_env import SwarmEnv
 from pogosim.learning.tasks import TASKS, BenchmarkTask, Controller, scores, task_of
 from pogosim.lines import say
@@ -75,6 +76,19 @@ def learning_seeds(seed: int) -> Iterator[int]:
     generator = np.random.default_rng(seed)
     while True:
         yield int(generator.integers(FIRST_TEST_SEED))
+
+
+def trials(network: Perceptron, candidates: Array, seeds: Iterator[int], episodes: int) -> tuple[Controller, list[int]]:
+    """Let each candidate be tried in the same episodes; returns the policies of all runs, and their seeds.
+
+    Args:
+        network: The shape of policies.
+        candidates: Their weights. Shape (candidates, weights).
+        seeds: Those of episodes.
+        episodes: How many each is tried in. Candidate i has the runs from i * episodes on.
+    """
+    by_run = np.repeat(candidates, episodes, axis=0)[:, None]
+    return partial(network.act, by_run), [*islice(seeds, episodes)] * len(candidates)
 
 
 def tested(task: BenchmarkTask, seed: int, policy_for: Callable[[SwarmEnv], Controller], **options: Any) -> Array:
